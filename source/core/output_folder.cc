@@ -355,6 +355,12 @@ namespace nsfd
 
   void write_file_atomically(const std::string &path, const std::string &text)
   {
+    write_file_atomically(path, std::vector<std::string_view>{text});
+  }
+
+  void write_file_atomically(const std::string &path,
+                             const std::vector<std::string_view> &parts)
+  {
     const std::string temporary = path + ".part";
     const auto fail = [&]() {
       const std::string reason = std::strerror(errno);
@@ -368,18 +374,19 @@ namespace nsfd
         open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file < 0)
       fail();
-    for (std::size_t done = 0; done < text.size();) {
-      const ssize_t n = write(file, text.data() + done, text.size() - done);
-      if (n < 0 && errno == EINTR)
-        continue;
-      if (n <= 0) {
-        const int reason = errno;
-        close(file);
-        errno = reason;
-        fail();
+    for (std::string_view left : parts)
+      while (!left.empty()) {
+        const ssize_t n = write(file, left.data(), left.size());
+        if (n < 0 && errno == EINTR)
+          continue;
+        if (n <= 0) {
+          const int reason = errno;
+          close(file);
+          errno = reason;
+          fail();
+        }
+        left.remove_prefix(std::size_t(n));
       }
-      done += std::size_t(n);
-    }
     if (close(file) != 0 || std::rename(temporary.c_str(), path.c_str()) != 0)
       fail();
   }

@@ -5,6 +5,8 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace nsfd
 {
@@ -95,4 +97,7 @@ namespace nsfd
    * @throws OutputError with the reason
    */
   void write_file_atomically(const std::string &path, const std::string &text);
+  /** The same of @p parts, one after the other: large ones are not copied. */
+  void write_file_atomically(const std::string &path,
+                             const std::vector<std::string_view> &parts);
 } // namespace nsfd

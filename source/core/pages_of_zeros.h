@@ -1,10 +1,13 @@
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
+#include <type_traits>
 #include <vector>
 
 namespace nsfd
 {
+  void release_pages_of_zeros(void *data, std::size_t bytes);
+
   /**
    * Gives the memory of whole pages of zeros back to the system. They read as
    * before, and get memory again as soon as something is written to them: for
@@ -12,6 +15,10 @@ namespace nsfd
    * system has no such pages, or for lists of less than some pages. A zero is
    * one of all bits: -0 keeps its memory.
    */
-  void release_pages_of_zeros(std::vector<double> &values);
-  void release_pages_of_zeros(std::vector<std::uint8_t> &values);
+  template <typename T>
+  void release_pages_of_zeros(std::vector<T> &values)
+  {
+    static_assert(std::is_trivially_copyable_v<T>);
+    release_pages_of_zeros(values.data(), values.size() * sizeof(T));
+  }
 } // namespace nsfd

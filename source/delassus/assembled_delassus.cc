@@ -52,6 +52,11 @@ namespace nsfd
       {
         return this->shares(this->time_step_, this->theta_);
       }
+      /** Diagonal of W. */
+      double own_compliance(const std::size_t row) const
+      {
+        return this->point_block(row / dim)[row % dim * (dim + 1)];
+      }
       void set_body_stiffness();
       void set_springs(const std::vector<double> &D);
       bool loose_springs_changed(const std::vector<char> &joined) const;
@@ -131,29 +136,23 @@ namespace nsfd
     template <int dim>
     void AssembledDelassus<dim>::set_springs(const std::vector<double> &D)
     {
-      const auto &points = this->points_;
       inverse_D_.assign(D.size(), 0.);
       bool exact = true;
-      for (std::size_t f = 0; f < points.faces.size(); ++f) {
-        const auto &face = points.faces[f];
-        const unsigned int n = face.count * dim;
-        const double *W = this->face_block(f);
-        for (unsigned int k = 0; k < n; ++k) {
-          const std::size_t row = std::size_t(face.first) * dim + k;
-          if (!(D[row] >= 0.))
-            continue;
-          const double stiffness = body_stiffness_[row / dim];
-          double least = 1e-2 * W[k * n + k], vanishing = 0.;
-          if (!this->least_compliance_.empty())
-            vanishing = least = this->least_compliance_[row];
-          else if (std::isfinite(stiffness)) {
-            least = 1e-2 / stiffness;
-            vanishing = 1e-10 / stiffness;
-          } else // rigid on both sides: nothing but inertia to compare with
-            vanishing = 1e-10 * W[k * n + k];
-          exact = exact && D[row] >= vanishing;
-          inverse_D_[row] = 1. / (D[row] >= vanishing ? D[row] : least);
-        }
+      for (std::size_t row = 0; row < D.size(); ++row) {
+        if (!(D[row] >= 0.))
+          continue;
+        const double W = own_compliance(row);
+        const double stiffness = body_stiffness_[row / dim];
+        double least = 1e-2 * W, vanishing = 0.;
+        if (!this->least_compliance_.empty())
+          vanishing = least = this->least_compliance_[row];
+        else if (std::isfinite(stiffness)) {
+          least = 1e-2 / stiffness;
+          vanishing = 1e-10 / stiffness;
+        } else // rigid on both sides: nothing but inertia to compare with
+          vanishing = 1e-10 * W;
+        exact = exact && D[row] >= vanishing;
+        inverse_D_[row] = 1. / (D[row] >= vanishing ? D[row] : least);
       }
       inverts_ = !this->communicator_.any(!exact);
     }
@@ -172,11 +171,9 @@ namespace nsfd
         const auto &face = points.faces[f];
         if (joined[f])
           continue;
-        const unsigned int n = face.count * dim;
-        const double *W = this->face_block(f);
-        for (unsigned int k = 0; k < n; ++k) {
-          const std::size_t row = std::size_t(face.first) * dim + k;
-          const double inertia = 1. / W[k * n + k],
+        const std::size_t first = std::size_t(face.first) * dim;
+        for (std::size_t row = first; row < first + face.count * dim; ++row) {
+          const double inertia = 1. / own_compliance(row),
                        now = inverse_D_[row] + inertia,
                        then = inverse_D_coarse_[row] + inertia;
           if (now > 4. * then || then > 4. * now)

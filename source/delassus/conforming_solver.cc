@@ -173,7 +173,9 @@ namespace nsfd
     n_own_ = std::size_t(space.n_own);
     exchange_ = GhostValues(communicator_, first, n_own_, remote);
     ties_ = TiedUnknowns(communicator_, space);
-    place_.clear();
+    // of this size, not of that of a larger space before
+    place_ = std::vector<int>();
+    place_.reserve(space.number.size());
     for (const long long k : space.number)
       place_.push_back(
           k >= first && k < end
@@ -181,8 +183,8 @@ namespace nsfd
               : int(n_own_) +
                     int(std::lower_bound(remote.begin(), remote.end(), k) -
                         remote.begin()));
-    b_.resize(n_own_ + remote.size());
-    x_.resize(b_.size());
+    b_ = std::vector<double>(n_own_ + remote.size());
+    x_ = std::vector<double>(b_.size());
   }
 
   double ConformingSolver::n_factor_entries() const

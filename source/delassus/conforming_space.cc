@@ -131,7 +131,9 @@ namespace nsfd
   void ConformingSpace::set_modes()
   {
     const unsigned int n_modes = dim_ == 2 ? 3 : 6;
-    space_.modes.assign(n_modes, std::vector<double>(space_.n_own, 0.));
+    // none keeps the room that a larger space took before
+    space_.modes.clear();
+    space_.modes.resize(n_modes, std::vector<double>(space_.n_own, 0.));
     for (std::size_t i = 0; i < space_.number.size(); ++i) {
       const long long k = space_.number[i] - space_.first;
       const int c = unknowns_.component[i];

@@ -69,9 +69,17 @@ namespace nsfd
     virtual bool bodies_are_apart() const { return true; }
 
     /**
-     * Diagonal blocks of W per face in the local frames, row-major of size
-     * (count dim)^2, at face_block(f); at least these where bodies share
-     * nodes.
+     * Diagonal block of W of a point in its frame, row-major; at least that
+     * where bodies share nodes.
+     */
+    const double *point_block(const std::size_t point) const
+    {
+      return point_blocks_.data() + point * dim * dim;
+    }
+
+    /**
+     * The same of the points of a face as a whole, row-major of size
+     * (count dim)^2. Of operators that keep them.
      */
     const double *face_block(const std::size_t face) const
     {
@@ -192,7 +200,8 @@ namespace nsfd
     const std::vector<ClassBlocks> &class_blocks() const { return blocks_; }
 
   protected:
-    void build_face_blocks();
+    void set_diagonal_blocks();
+    std::vector<double> diagonal_blocks(bool whole) const;
 
     using FaceTraces<dim>::communicator_;
     using FaceTraces<dim>::bodies_;
@@ -202,7 +211,8 @@ namespace nsfd
     using FaceTraces<dim>::side_2_;
     double time_step_ = 0., theta_ = 0.;
     std::vector<ClassBlocks> blocks_;
-    std::vector<double> face_blocks_;
+    bool keeps_face_blocks_ = false;
+    std::vector<double> point_blocks_, face_blocks_;
     std::vector<std::size_t> face_offset_;
     mutable Counters counters_;
 

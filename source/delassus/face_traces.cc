@@ -2,6 +2,8 @@
 
 #include "body_loops.h"
 
+#include "core/pages_of_zeros.h"
+
 #include <algorithm>
 
 namespace nsfd
@@ -19,8 +21,10 @@ namespace nsfd
   void FaceTraces<dim>::reset_traces()
   {
     order_ = shared_first(bodies_, points_);
-    for (auto *vector : {&cartesian_, &side_1_, &side_2_})
+    for (auto *vector : {&cartesian_, &side_1_, &side_2_}) {
       vector->assign((points_.n_points + 1) * dim, 0.);
+      release_pages_of_zeros(*vector); // some operators never fill them
+    }
     trace_transposed_.clear();
     for (const BodyClass &body : bodies_.classes)
       trace_transposed_.push_back(body.trace.transposed());

@@ -146,7 +146,7 @@ namespace nsfd
     factor_.set_space(nodes);
     tangent_.set_space(nodes);
     // of several unknowns that are one node, the first
-    representative_.assign(std::size_t(nodes.n_own), -1);
+    representative_ = std::vector<int>(std::size_t(nodes.n_own), -1);
     for (std::size_t i = 0; i < nodes.number.size(); ++i) {
       const long long mine = nodes.number[i] - nodes.first;
       if (mine >= 0 && mine < nodes.n_own && representative_[mine] < 0)

@@ -127,13 +127,8 @@ namespace nsfd
     void Bonded<dim>::set_diagonal()
     {
       diagonal_.assign(this->bonded_.size() * dim, 0.);
-      for (std::size_t f = 0; f < this->points_.faces.size(); ++f) {
-        const auto &face = this->points_.faces[f];
-        const unsigned int n = face.count * dim;
-        const double *W = this->face_block(f);
-        for (unsigned int k = 0; k < n; ++k)
-          diagonal_[std::size_t(face.first) * dim + k] = W[k * n + k];
-      }
+      for (std::size_t k = 0; k < diagonal_.size(); ++k)
+        diagonal_[k] = this->point_block(k / dim)[k % dim * (dim + 1)];
     }
 
     template <int dim>

@@ -19,7 +19,12 @@ namespace nsfd
     class FaceBlocks : public DelassusOperator<dim>
     {
     public:
-      using DelassusOperator<dim>::DelassusOperator;
+      FaceBlocks(const Communicator &communicator, const Bodies &bodies,
+                 const InterfacePoints<dim> &points)
+          : DelassusOperator<dim>(communicator, bodies, points)
+      {
+        this->keeps_face_blocks_ = true;
+      }
 
       void prepare_preconditioner(const std::vector<double> &D) override
       {

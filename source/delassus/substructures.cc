@@ -152,7 +152,7 @@ namespace nsfd
       all[std::size_t(c) * n + std::size_t(r)] += value;
     });
     dissection_.forget_terms();
-    return !communicator.any(!outer_.eliminate(all, seen, split_));
+    return !communicator.any(!outer_.eliminate(std::move(all), seen, split_));
   }
 
   template <int dim>
@@ -209,19 +209,30 @@ namespace nsfd
       place_.push_back(place(space.first + b * size));
     for (const long long block : matrix.ghosts_)
       place_.push_back(place(block * size));
-    const std::size_t n = merged.size();
-    condensed_.assign(n * n, 0.);
+    dissection_.set_places(std::move(places));
+  }
+
+  /** S in the present space: lower triangle, or with the upper one. */
+  template <int dim>
+  std::vector<double> Substructures<dim>::condensed(const bool symmetric) const
+  {
+    const auto n = std::size_t(n_border());
     const std::size_t n_split = merged_.size();
+    std::vector<double> A(n * n, 0.);
     for (std::size_t c = 0; c < n_split; ++c)
       for (std::size_t r = c; r < n_split; ++r) {
         const auto row = std::size_t(merged_[r]),
                    column = std::size_t(merged_[c]);
         const double value = split_[c * n_split + r];
         // an entry off the diagonal stands for two, which may meet on it
-        condensed_[std::min(row, column) * n + std::max(row, column)] +=
+        A[std::min(row, column) * n + std::max(row, column)] +=
             row == column && r != c ? 2. * value : value;
       }
-    dissection_.set_places(std::move(places));
+    if (!symmetric)
+      for (std::size_t c = 1; c < n; ++c)
+        for (std::size_t r = 0; r < c; ++r)
+          A[c * n + r] = A[r * n + c];
+    return A;
   }
 
   /** To the dense matrix @p A what points of this rank add. */
@@ -252,24 +263,17 @@ namespace nsfd
   {
     const auto &communicator = finest_.delassus().communicator();
     const auto n = std::size_t(n_border());
-    const bool shared = springs && communicator.size() > 1;
-    std::vector<double> A;
-    if (shared)
-      A.assign(n * n, 0.);
-    else
-      A = condensed_;
-    if (springs)
+    std::vector<double> A = condensed(symmetric);
+    if (springs && communicator.size() == 1)
       add_springs(springs, A);
-    if (shared) {
-      MPI_Allreduce(MPI_IN_PLACE, A.data(), int(A.size()), MPI_DOUBLE, MPI_SUM,
-                    communicator.mpi());
+    else if (springs) {
+      std::vector<double> sums(A.size(), 0.);
+      add_springs(springs, sums);
+      MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE,
+                    MPI_SUM, communicator.mpi());
       for (std::size_t k = 0; k < A.size(); ++k)
-        A[k] += condensed_[k];
+        A[k] += sums[k];
     }
-    if (!symmetric)
-      for (std::size_t c = 1; c < n; ++c)
-        for (std::size_t r = 0; r < c; ++r)
-          A[c * n + r] += condensed_[r * n + c];
     return !communicator.any(
         !factor_.factorise(std::move(A), int(n), symmetric));
   }

@@ -106,6 +106,7 @@ namespace nsfd
     bool eliminate(const StepShares &shares, const double *springs);
     void set_space(const CoarseSpace &space, const JoinedMatrix<dim> &matrix);
     bool factorise(const double *springs, bool symmetric);
+    std::vector<double> condensed(bool symmetric) const;
     void add_springs(const double *springs, std::vector<double> &A) const;
     void solve(const double *b, double *x);
     bool eliminate_between_ranks();
@@ -128,7 +129,6 @@ namespace nsfd
     std::vector<int> place_;  ///< in the border, by block of the matrix
     std::vector<int> merged_; ///< by row of S: that of the space
     int n_border_ = 0;
-    std::vector<double> condensed_; ///< S in the space, lower triangle
     DenseFactor factor_;
     std::vector<double> right_, kept_, solution_;
   };

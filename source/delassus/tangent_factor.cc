@@ -29,7 +29,6 @@ namespace nsfd
     const bool made = springs.size() == springs_.size();
     unsigned long long changed = 0;
     bool differ = !made;
-    const auto &points = delassus_.points();
     for (const std::size_t i : matrix.parting_points()) {
       if (!made)
         break;
@@ -41,11 +40,7 @@ namespace nsfd
         differ = differ || springs[k] != springs_[k];
       }
       // beside what the bodies themselves resist with
-      const std::size_t f = points.face_of[i];
-      const auto &face = points.faces[f];
-      const std::size_t n = face.count * dim;
-      const double W =
-          delassus_.face_block(f)[(i - face.first) * dim * (n + 1)];
+      const double W = *delassus_.point_block(i);
       changed += change > same * size && change * W > soft;
     }
     const auto all = communicator_.sum_integer(changed + (differ ? other : 0) +

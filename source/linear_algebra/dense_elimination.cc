@@ -3,6 +3,7 @@
 #include "lapack.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace nsfd
 {
@@ -12,7 +13,7 @@ namespace nsfd
     constexpr int next = 1;
   } // namespace
 
-  bool DenseElimination::eliminate(const std::vector<double> &matrix,
+  bool DenseElimination::eliminate(std::vector<double> &&matrix,
                                    const std::vector<char> &kept,
                                    std::vector<double> &left)
   {
@@ -28,12 +29,14 @@ namespace nsfd
     const int n_kept = int(kept_.size()), n_gone = int(gone_.size());
     L_.clear();
     Y_.clear();
+    if (n_gone == 0) {
+      left = std::move(matrix);
+      return true;
+    }
     left.assign(kept_.size() * kept_.size(), 0.);
     for (std::size_t c = 0; c < kept_.size(); ++c)
       for (std::size_t r = c; r < kept_.size(); ++r)
         left[c * kept_.size() + r] = entry(kept_[r], kept_[c]);
-    if (n_gone == 0)
-      return true;
     for (const int c : gone_)
       for (const int r : gone_)
         L_.push_back(entry(r, c));

@@ -18,8 +18,8 @@ namespace nsfd
      * @p left is what is left of them, of the same form. False: S_ee is not
      * positive definite.
      */
-    bool eliminate(const std::vector<double> &matrix,
-                   const std::vector<char> &kept, std::vector<double> &left);
+    bool eliminate(std::vector<double> &&matrix, const std::vector<char> &kept,
+                   std::vector<double> &left);
 
     /** Of a @p right side of all: that of the unknowns that are kept. */
     void forward(const std::vector<double> &right, std::vector<double> &kept);

@@ -113,7 +113,6 @@ namespace nsfd
                                                        boundary.end(), number) -
                                       boundary.begin()));
     }
-    inner_matrix_.value.resize(inner_source_.size());
   }
 
   void Dissection::gather_shares()
@@ -173,13 +172,16 @@ namespace nsfd
 
   bool Dissection::eliminate(const SparseRows &matrix)
   {
-    for (std::size_t k = 0; k < inner_source_.size(); ++k)
-      inner_matrix_.value[k] = matrix.value[inner_source_[k]];
     const std::size_t m = own_.boundary.size();
-    std::vector<double> left, mine;
+    std::vector<double> mine;
     bool failed = false;
     try {
+      auto &values = inner_matrix_.value;
+      for (const int k : inner_source_)
+        values.push_back(matrix.value[k]);
+      std::vector<double> left;
       failed = !inner_.factorise(inner_matrix_, left);
+      values = std::vector<double>();
       left.resize(m * m, 0.);
       mine.reserve(std::size_t(values_.counts[communicator_.rank()]));
       for (std::size_t r = 0; r < m; ++r)
@@ -192,8 +194,10 @@ namespace nsfd
       return false;
     for (const int k : common_source_)
       mine.push_back(matrix.value[k]);
-    terms_ = gather(communicator_.mpi(), MPI_DOUBLE, mine, values_.counts,
-                    values_.offsets);
+    terms_ = communicator_.size() == 1
+                 ? std::move(mine)
+                 : gather(communicator_.mpi(), MPI_DOUBLE, mine, values_.counts,
+                          values_.offsets);
     return true;
   }
 

@@ -22,6 +22,10 @@ void dtrsv_(const char *uplo, const char *transposed, const char *diagonal,
 void dsyrk_(const char *uplo, const char *transposed, const int *n,
             const int *k, const double *alpha, const double *A, const int *lda,
             const double *beta, double *C, const int *ldc);
+void dgemm_(const char *transposed_a, const char *transposed_b, const int *m,
+            const int *n, const int *k, const double *alpha, const double *A,
+            const int *lda, const double *B, const int *ldb, const double *beta,
+            double *C, const int *ldc);
 void dsymv_(const char *uplo, const int *n, const double *alpha,
             const double *A, const int *lda, const double *x, const int *incx,
             const double *beta, double *y, const int *incy);

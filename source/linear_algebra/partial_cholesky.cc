@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <new>
+#include <stdexcept>
 
 namespace nsfd
 {
@@ -128,6 +129,13 @@ namespace nsfd
         front.parent =
             front_of[std::size_t(front.rows[std::size_t(front.n_columns)])];
     values_.resize(n_values);
+    n_stack_ = 0;
+    for_fronts([this](const Front &front, const std::size_t,
+                      const std::size_t top, const auto &) {
+      const auto n_outer = std::size_t(size(front) - front.n_inner);
+      n_stack_ =
+          std::max(n_stack_, top + update_size(front) + n_outer * n_outer);
+    });
   }
 
   /** What the matrix has in the columns of @p front. */
@@ -149,88 +157,130 @@ namespace nsfd
     }
   }
 
-  /** Columns of @p update that are not of the boundary. */
-  void PartialCholesky::add_update(const Front &child,
-                                   const std::vector<double> &update,
-                                   const Front &front, double *L,
-                                   std::vector<double> &left)
+  /** Of @p update the columns that are not of the boundary. */
+  void PartialCholesky::add_update(const Front &child, const double *update,
+                                   const Front &front, double *L, double *left)
   {
     const int n = size(front), n_left = n - front.n_columns,
               m = size(child) - child.n_columns;
     const int *rows = child.rows.data() + child.n_columns;
     for (int c = 0; c < child.n_inner - child.n_columns; ++c) {
       const int column = local_[std::size_t(rows[c])];
-      const double *from = &update[std::size_t(c) * std::size_t(m)];
+      const double *from = update + std::size_t(c) * std::size_t(m);
       double *to = column < front.n_columns
                        ? L + std::size_t(column) * std::size_t(n)
-                       : &left[std::size_t(column - front.n_columns) *
-                               std::size_t(n_left)] -
+                       : left +
+                             std::size_t(column - front.n_columns) *
+                                 std::size_t(n_left) -
                              front.n_columns;
       for (int r = c; r < m; ++r)
         to[local_[std::size_t(rows[r])]] += from[r];
     }
   }
 
+  /** What @p front, with its factor @p L, leaves for the boundary. */
+  void PartialCholesky::add_to_boundary(const Front &front, const double *L,
+                                        double *part,
+                                        std::vector<double> &boundary) const
+  {
+    const int n = size(front), k = front.n_columns, m = n - front.n_inner;
+    dsyrk_("L", "N", &m, &k, &minus_one, L + front.n_inner, &n, &zero, part,
+           &m);
+    const auto place = [&](const int r) {
+      return unknown_[std::size_t(front.rows[std::size_t(front.n_inner + r)])] -
+             n_inner_;
+    };
+    for (int c = 0; c < m; ++c)
+      for (int r = c; r < m; ++r) {
+        const int row = place(r), column = place(c);
+        boundary[std::size_t(std::min(row, column)) * std::size_t(n_boundary_) +
+                 std::size_t(std::max(row, column))] +=
+            part[std::size_t(c) * std::size_t(m) + std::size_t(r)];
+      }
+  }
+
+  /** Entries of the update that the parent of @p front takes. */
+  std::size_t PartialCholesky::update_size(const Front &front) const
+  {
+    return std::size_t(size(front) - front.n_columns) *
+           std::size_t(front.n_inner - front.n_columns);
+  }
+
+  /**
+   * Updates lie one on the other, and a parent finds those of its children on
+   * top: the order of CHOLMOD is a postorder. @p visit (front, place of what
+   * it leaves, those of its children).
+   */
+  template <typename Visit>
+  void PartialCholesky::for_fronts(const Visit &visit) const
+  {
+    struct Update {
+      int front;
+      std::size_t begin;
+    };
+    std::vector<Update> stack, children;
+    std::size_t top = 0;
+    for (int f = 0; f < int(fronts_.size()); ++f) {
+      const Front &front = fronts_[std::size_t(f)];
+      children.clear();
+      while (!stack.empty() &&
+             fronts_[std::size_t(stack.back().front)].parent == f) {
+        children.push_back(stack.back());
+        stack.pop_back();
+      }
+      const std::size_t begin = children.empty() ? top : children.back().begin;
+      visit(front, begin, top, children);
+      top = begin;
+      if (front.parent >= 0) {
+        stack.push_back({f, begin});
+        top += update_size(front);
+      }
+    }
+    if (!stack.empty())
+      throw std::logic_error("the order of elimination is no postorder");
+  }
+
   bool PartialCholesky::factorise(const SparseRows &rows,
                                   std::vector<double> &boundary)
   {
     boundary.resize(std::size_t(n_boundary_) * std::size_t(n_boundary_), 0.);
-    std::vector<std::vector<double>> updates(fronts_.size());
-    // what was taken once is kept: pages that are new cost as much as sums
-    const auto take = [this](std::vector<double> &update, const std::size_t n) {
-      if (!free_.empty()) {
-        update.swap(free_.back());
-        free_.pop_back();
-      }
-      update.resize(n);
-    };
-    const auto give_back = [this](std::vector<double> &update) {
-      free_.emplace_back().swap(update);
-    };
-    std::vector<std::vector<int>> children(fronts_.size());
-    for (std::size_t f = 0; f < fronts_.size(); ++f) {
-      const Front &front = fronts_[f];
-      const int n = size(front), k = front.n_columns, n_left = n - k;
+    std::vector<double> stack(n_stack_);
+    bool is_positive = true;
+    for_fronts([&](const Front &front, const std::size_t begin,
+                   const std::size_t top, const auto &children) {
+      if (!is_positive)
+        return;
+      const int n = size(front), k = front.n_columns, n_left = n - k,
+                n_inner = front.n_inner - k, n_outer = n_left - n_inner;
       double *L = &values_[front.values];
-      auto &left = updates[f];
-      take(left, std::size_t(n_left) * std::size_t(n_left));
-      const bool is_leaf = children[f].empty();
+      double *left = stack.data() + top;
+      const std::size_t n_update = update_size(front);
+      const bool is_leaf = children.empty();
       if (!is_leaf)
-        std::fill(left.begin(), left.end(), 0.);
+        std::fill_n(left, n_update, 0.);
       assemble(rows, front, L);
-      for (const int child : children[f]) {
-        auto &update = updates[std::size_t(child)];
-        add_update(fronts_[std::size_t(child)], update, front, L, left);
-        give_back(update);
-      }
+      for (const auto &child : children)
+        add_update(fronts_[std::size_t(child.front)],
+                   stack.data() + child.begin, front, L, left);
       int info = 0;
       dpotrf_("L", &k, L, &n, &info);
-      if (info != 0)
-        return false;
-      if (n_left == 0) {
-        give_back(left);
-        continue;
-      }
+      is_positive = info == 0;
+      if (!is_positive || n_left == 0)
+        return;
       dtrsm_("R", "L", "T", "N", &n_left, &k, &one, L, &n, L + k, &n);
-      dsyrk_("L", "N", &n_left, &k, &minus_one, L + k, &n,
-             is_leaf ? &zero : &one, left.data(), &n_left);
-      const int *places = front.rows.data() + k;
-      for (int c = front.n_inner - k; c < n_left; ++c) {
-        const int column = unknown_[std::size_t(places[c])] - n_inner_;
-        for (int r = c; r < n_left; ++r) {
-          const int row = unknown_[std::size_t(places[r])] - n_inner_;
-          boundary[std::size_t(std::min(row, column)) *
-                       std::size_t(n_boundary_) +
-                   std::size_t(std::max(row, column))] +=
-              left[std::size_t(c) * std::size_t(n_left) + std::size_t(r)];
-        }
-      }
-      if (front.parent >= 0)
-        children[std::size_t(front.parent)].push_back(int(f));
-      else
-        give_back(left);
-    }
-    return true;
+      const double *of_children = is_leaf ? &zero : &one;
+      if (n_inner > 0)
+        dsyrk_("L", "N", &n_inner, &k, &minus_one, L + k, &n, of_children, left,
+               &n_left);
+      if (n_inner > 0 && n_outer > 0)
+        dgemm_("N", "T", &n_outer, &n_inner, &k, &minus_one, L + front.n_inner,
+               &n, L + k, &n, of_children, left + n_inner, &n_left);
+      if (n_outer > 0)
+        add_to_boundary(front, L, left + n_update, boundary);
+      if (begin < top)
+        std::copy_n(left, n_update, stack.data() + begin);
+    });
+    return is_positive;
   }
 
   void PartialCholesky::forward(std::vector<double> &x)

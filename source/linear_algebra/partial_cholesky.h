@@ -51,8 +51,13 @@ namespace nsfd
     };
     int size(const Front &front) const { return int(front.rows.size()); }
     void assemble(const SparseRows &rows, const Front &front, double *L);
-    void add_update(const Front &child, const std::vector<double> &update,
-                    const Front &front, double *L, std::vector<double> &left);
+    void add_update(const Front &child, const double *update,
+                    const Front &front, double *L, double *left);
+    void add_to_boundary(const Front &front, const double *L, double *part,
+                         std::vector<double> &boundary) const;
+    std::size_t update_size(const Front &front) const;
+    template <typename Visit>
+    void for_fronts(const Visit &visit) const;
 
     int n_inner_ = 0, n_boundary_ = 0;
     /// unknown by place in the order of elimination, and the reverse
@@ -61,6 +66,6 @@ namespace nsfd
     std::vector<double> values_;
     std::vector<int> local_; ///< by place: row of the present front
     std::vector<double> ordered_, part_;
-    std::vector<std::vector<double>> free_; ///< room for updates
+    std::size_t n_stack_ = 0; ///< entries of updates at one time
   };
 } // namespace nsfd

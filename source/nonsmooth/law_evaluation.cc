@@ -2,6 +2,7 @@
 #include "solver.h"
 
 #include "core/cost.h"
+#include "core/pages_of_zeros.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,13 +41,17 @@ namespace nsfd
     worst_point = law_calls = 0;
     frozen_ = nullptr;
     velocity.assign(n * dim, 0.);
-    defect.assign(n * dim, 0.);
     // of most points there is nothing in them
     if (solutions.size() != n) {
+      defect.assign(n * dim, 0.);
       solutions.assign(n, {});
       linear_.assign(n, {});
+      release_pages_of_zeros(defect);
+      release_pages_of_zeros(solutions);
+      release_pages_of_zeros(linear_);
     } else
       for (const std::size_t i : points_) {
+        std::fill_n(&defect[i * dim], dim, 0.);
         solutions[i] = {};
         linear_[i] = {};
       }

@@ -76,6 +76,7 @@ namespace nsfd
     const bool elastic = problem.kind[i] == PointKind::elastic;
     if (problem.kind[i] == PointKind::free && !problem.contact[i]) {
       result.largest = infinity; // nothing acts
+      result.is_linear = true;
       return result;
     }
     if ((!elastic && problem.kind[i] != PointKind::cohesive) ||
@@ -93,10 +94,9 @@ namespace nsfd
       result.secant = damage.secant(damage.history());
       result.largest = square(damage.history().opening);
     }
-    if (result.secant.normal != problem.compression_stiffness[i]) {
-      result.largest = -1.;
-      return result;
-    }
+    if (result.secant.normal != problem.compression_stiffness[i])
+      return {};
+    result.is_linear = true;
     const TangentialSpring spring =
         tangential_spring<dim>(problem, result.secant.tangential);
     result.slope = spring.slope;

@@ -10,8 +10,8 @@ namespace nsfd
 {
   /** Where a point ended in its local problem. */
   enum class PointStatus : std::uint8_t {
-    prescribed,
     open, ///< no contact impulse
+    prescribed,
     stick,
     slide
   };
@@ -67,9 +67,10 @@ namespace nsfd
     double normal = 0., tangential = 0.;                   ///< kappa
     double normal_majorant = 0., tangential_majorant = 0.; ///< R
     Secant secant;
-    double largest = -1.; ///< d_m^2; negative: the law is not linear
+    double largest = 0.;    ///< d_m^2
+    bool is_linear = false; ///< or nothing else is known here
 
-    bool exists() const { return largest >= 0.; }
+    bool exists() const { return is_linear; }
 
     /** False, and nothing done, if the step would damage the point. */
     bool solve(const OneStepProblem<dim> &problem, const std::size_t point,

@@ -46,16 +46,18 @@ namespace nsfd
   void FieldOutput<dim>::write(const State &state, const double time_step,
                                const Fragments<dim> &fragments)
   {
-    const auto volume = volume_grid(discretization_, state, fragments);
-    const auto faces =
-        interface_grid(discretization_, face_numbers_, state, time_step);
-    if (xdmf_fields_) {
-      add_together(*xdmf_fields_, volume);
-      add_together(*xdmf_interfaces_, faces);
-    } else {
-      write_series(fields_, "fields", volume);
-      write_series(interfaces_, "interfaces", faces);
-    }
+    // one after the other: there is never more than one of them in memory
+    const auto add = [this](PvdSeries &series, const auto &xdmf,
+                            const std::string &base, const VtuGrid &grid) {
+      if (xdmf)
+        add_together(*xdmf, grid);
+      else
+        write_series(series, base, grid);
+    };
+    add(fields_, xdmf_fields_, "fields",
+        volume_grid(discretization_, state, fragments));
+    add(interfaces_, xdmf_interfaces_, "interfaces",
+        interface_grid(discretization_, face_numbers_, state, time_step));
     ++number_;
   }
 

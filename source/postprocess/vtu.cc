@@ -6,31 +6,42 @@
 
 #include <fmt/format.h>
 
+#include <deque>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
 namespace nsfd
 {
   namespace
   {
-    /** The binary blocks at the end of the file and where each starts. */
+    /** The binary blocks at the end of the file and where each starts. They
+        stay where they are: pictures are the largest of all there is. */
     class AppendedData
     {
     public:
       /** Returns the offset attribute of the block. */
       std::size_t add(const void *data, const std::uint64_t n_bytes)
       {
-        const std::size_t offset = bytes_.size();
-        bytes_.append(reinterpret_cast<const char *>(&n_bytes),
-                      sizeof(n_bytes));
-        bytes_.append(static_cast<const char *>(data), n_bytes);
+        const std::size_t offset = length_;
+        sizes_.push_back(n_bytes);
+        parts_.push_back(view(&sizes_.back(), sizeof(n_bytes)));
+        parts_.push_back(view(data, n_bytes));
+        length_ += sizeof(n_bytes) + n_bytes;
         return offset;
       }
 
-      const std::string &bytes() const { return bytes_; }
+      const std::vector<std::string_view> &parts() const { return parts_; }
 
     private:
-      std::string bytes_;
+      static std::string_view view(const void *data, const std::uint64_t n)
+      {
+        return {static_cast<const char *>(data), n};
+      }
+
+      std::deque<std::uint64_t> sizes_; ///< none of them ever moves
+      std::vector<std::string_view> parts_;
+      std::size_t length_ = 0;
     };
 
     template <typename Number>
@@ -157,9 +168,11 @@ namespace nsfd
     xml += data_section("PointData", grid.point_data, data);
     xml += data_section("CellData", grid.cell_data, data);
     xml += "</Piece>\n</UnstructuredGrid>\n";
-    xml += "<AppendedData encoding=\"raw\">\n_" + data.bytes();
-    xml += "\n</AppendedData>\n</VTKFile>\n";
-    write_file_atomically(path, xml);
+    xml += "<AppendedData encoding=\"raw\">\n_";
+    std::vector<std::string_view> parts = {xml};
+    parts.insert(parts.end(), data.parts().begin(), data.parts().end());
+    parts.emplace_back("\n</AppendedData>\n</VTKFile>\n");
+    write_file_atomically(path, parts);
   }
 
   void write_pvtu(const std::string &path, const VtuGrid &grid,

@@ -85,6 +85,7 @@ namespace nsfd
       start.jump_old = state.jump;
       start.opening_max = state.opening_max;
       start.slip_max = state.slip_max;
+      start.compression_stiffness.assign(problem.n_points, 0.);
       std::vector<double> stored(problem.n_owned, 0.);
       for (std::size_t i = 0; i < problem.n_owned; ++i) {
         if (!has_impulse(state.kind[i]))

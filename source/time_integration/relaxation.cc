@@ -34,7 +34,7 @@ namespace nsfd
                               NonsmoothSolver<dim> &solver,
                               JoinedDelassus<dim> *const bonded)
       : input_(input), discretization_(discretization), delassus_(delassus),
-        solver_(solver), problem_(constant_data(input, discretization)),
+        solver_(solver), problem_(point_constants(input, discretization)),
         free_motion_(input, discretization, delassus),
         step_problem_(input, discretization, delassus, counters_),
         balance_(delassus, free_motion_),
@@ -290,7 +290,7 @@ namespace nsfd
     iterate_.at.displacement = q;
     for (std::size_t k = 0; k < impulse.size(); ++k)
       iterate_.force[k] = impulse[k] / h;
-    iterate_.solutions = evaluation.solutions;
+    iterate_.solutions = std::move(evaluation.solutions);
     for (std::size_t i = 0; i < iterate_.activated.size(); ++i)
       if (problem_.kind[i] == PointKind::rigid &&
           iterate_.solutions[i].damages) {

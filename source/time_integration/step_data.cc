@@ -229,23 +229,18 @@ namespace nsfd
     void set_majorants(const DelassusOperator<dim> &delassus,
                        OneStepProblem<dim> &problem)
     {
-      const auto &faces = delassus.points().faces;
-      for (std::size_t f = 0; f < faces.size(); ++f) {
-        const auto &face = faces[f];
-        const unsigned int n = face.count * dim;
-        const double *W = delassus.face_block(f);
-        for (unsigned int p = 0; p < face.count; ++p) {
-          double normal = 0., tangential = 0.;
-          for (unsigned int r = 0; r < dim; ++r) {
-            double sum = 0.;
-            for (unsigned int c = 0; c < dim; ++c)
-              sum += std::abs(W[(p * dim + r) * n + p * dim + c]);
-            double &largest = r == 0 ? normal : tangential;
-            largest = std::max(largest, sum);
-          }
-          problem.majorant_normal[face.first + p] = normal;
-          problem.majorant_tangential[face.first + p] = tangential;
+      for (std::size_t i = 0; i < delassus.points().n_points; ++i) {
+        const double *W = delassus.point_block(i);
+        double normal = 0., tangential = 0.;
+        for (unsigned int r = 0; r < dim; ++r) {
+          double sum = 0.;
+          for (unsigned int c = 0; c < dim; ++c)
+            sum += std::abs(W[r * dim + c]);
+          double &largest = r == 0 ? normal : tangential;
+          largest = std::max(largest, sum);
         }
+        problem.majorant_normal[i] = normal;
+        problem.majorant_tangential[i] = tangential;
       }
     }
   } // namespace
@@ -262,11 +257,11 @@ namespace nsfd
   }
 
   template <int dim>
-  OneStepProblem<dim> constant_data(const SceneInput &input,
-                                    const Discretization<dim> &discretization)
+  void add_step_data(OneStepProblem<dim> &problem)
   {
-    auto constants = point_constants(input, discretization);
-    OneStepProblem<dim> problem;
+    if (problem.kind.size() == problem.n_points)
+      return;
+    auto constants = std::move(problem);
     resize(problem, constants.n_points);
     problem.n_owned = constants.n_owned;
     problem.theta = constants.theta;
@@ -278,7 +273,6 @@ namespace nsfd
           &OneStepProblem<dim>::opening_factor, &OneStepProblem<dim>::viscosity,
           &OneStepProblem<dim>::dilatancy, &OneStepProblem<dim>::lift_left})
       (problem.*member).swap(constants.*member);
-    return problem;
   }
 
   template <int dim>
@@ -358,6 +352,7 @@ namespace nsfd
                 const DrivenMotion<dim> &motion, const State &old,
                 const double h, OneStepProblem<dim> &problem)
   {
+    add_step_data(problem);
     problem.time_step = h;
     problem.kind = old.kind;
     problem.opening_max = old.opening_max;
@@ -381,14 +376,12 @@ namespace nsfd
 
   template double intact_stiffness(const OneStepProblem<2> &, std::size_t);
   template double intact_stiffness(const OneStepProblem<3> &, std::size_t);
-  template OneStepProblem<2> constant_data(const SceneInput &,
-                                           const Discretization<2> &);
+  template void add_step_data(OneStepProblem<2> &);
+  template void add_step_data(OneStepProblem<3> &);
   template OneStepProblem<2> point_constants(const SceneInput &,
                                              const Discretization<2> &);
   template OneStepProblem<3> point_constants(const SceneInput &,
                                              const Discretization<3> &);
-  template OneStepProblem<3> constant_data(const SceneInput &,
-                                           const Discretization<3> &);
   template void set_step(const SceneInput &, const Discretization<2> &,
                          const std::vector<PointOrigin> &,
                          const DelassusOperator<2> &, const DrivenMotion<2> &,

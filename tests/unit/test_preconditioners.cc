@@ -21,14 +21,9 @@ namespace small_meshes::test_preconditioners
   template <int dim>
   Vector delassus_diagonal(const DelassusOperator<dim> &delassus)
   {
-    const auto &points = delassus.points();
-    Vector result(points.n_points * dim);
-    for (std::size_t f = 0; f < points.faces.size(); ++f) {
-      const unsigned int n = points.faces[f].count * dim;
-      for (unsigned int k = 0; k < n; ++k)
-        result[std::size_t(points.faces[f].first) * dim + k] =
-            delassus.face_block(f)[k * n + k];
-    }
+    Vector result(delassus.points().n_points * dim);
+    for (std::size_t k = 0; k < result.size(); ++k)
+      result[k] = delassus.point_block(k / dim)[k % dim * (dim + 1)];
     return result;
   }
 

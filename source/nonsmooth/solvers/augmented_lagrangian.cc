@@ -2,6 +2,7 @@
 #include "held_supports.h"
 
 #include "core/cost.h"
+#include "core/pages_of_zeros.h"
 #include "linear_algebra/positive_part.h"
 #include "nonsmooth/natural_map.h"
 #include "nonsmooth/point_tangent.h"
@@ -64,24 +65,39 @@ namespace nsfd
     return (may_be_rough(work) ? of_equilibria : of_momenta) * work.tolerance;
   }
 
+  /** Zeros in @p values, @p size per point; points_ have had others. */
+  template <int dim>
+  void AugmentedLagrangian<dim>::clear(Vector &values, const std::size_t size,
+                                       const std::size_t n_points) const
+  {
+    if (values.size() != n_points * size) {
+      values.assign(n_points * size, 0.);
+      release_pages_of_zeros(values);
+      return;
+    }
+    for (const std::size_t i : points_)
+      std::fill_n(&values[i * size], size, 0.);
+  }
+
   template <int dim>
   void AugmentedLagrangian<dim>::begin(const Work &work, const Vector &impulse)
   {
     const auto &problem = work.problem;
     const std::size_t n = problem.n_points * dim;
     impulse_ = impulse;
-    solutions_.resize(problem.n_points);
+    // of points that do not act they stay without anything
+    if (solutions_.size() != problem.n_points) {
+      solutions_.assign(problem.n_points, {});
+      release_pages_of_zeros(solutions_);
+    }
     for (const std::size_t i : problem.acting)
       solutions_[i].reach = work.evaluation.solutions[i].reach;
     velocity_.assign(n, 0.);
-    compliance_.assign(n, 0.);
-    dP_.assign(n, 0.);
     dU_.assign(n, 0.);
-    // of points that do not act they stay so
-    rest_.assign(n, 0.);
-    right_side_.assign(n, 0.);
-    defect_.assign(n, 0.);
-    tangents_.assign(n * dim, 0.);
+    for (Vector *vector : {&compliance_, &dP_, &rest_, &right_side_, &defect_})
+      clear(*vector, dim, problem.n_points);
+    clear(tangents_, dim * dim, problem.n_points);
+    points_ = problem.acting;
     rigid_ = of_nodes;
     if (!work.from_rest) {
       // what is rigid is so beside the stiffness of the bodies as well, which
@@ -233,13 +249,21 @@ namespace nsfd
             solutions_[i].impulse[c] - impulse_[i * dim + c];
   }
 
+  /** Before supports and springs that are left out go into the right side. */
+  template <int dim>
+  void AugmentedLagrangian<dim>::keep_defect(const Work &work)
+  {
+    for (const std::size_t i : work.problem.acting)
+      std::copy_n(&right_side_[i * dim], dim, &defect_[i * dim]);
+  }
+
   /** Downhill; false where there is no such system. Collective. */
   template <int dim>
   bool AugmentedLagrangian<dim>::find_direction(const Work &work)
   {
     ++work.report.newton;
     set_right_side(work);
-    defect_ = right_side_;
+    keep_defect(work);
     const auto solved = [&](const bool symmetric) {
       const double tolerance = work.from_rest ? 0. : enough(work),
                    share = work.from_rest ? 0. : of_directions;
@@ -266,7 +290,9 @@ namespace nsfd
     const double start = -slope(work, 0.);
     double length = 1., low = 0., high = 1.;
     const auto try_length = [&] {
-      moved_ = velocity_;
+      moved_.resize(velocity_.size());
+      for (const std::size_t i : work.problem.acting)
+        std::copy_n(&velocity_[i * dim], dim, &moved_[i * dim]);
       add<dim>(work.problem.acting, length, dU_, moved_);
       answer(work, moved_);
     };

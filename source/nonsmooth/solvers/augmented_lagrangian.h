@@ -87,6 +87,7 @@ namespace nsfd
 
     bool may_be_rough(const Work &work) const;
     double enough(const Work &work) const;
+    void clear(Vector &values, std::size_t size, std::size_t n_points) const;
     void begin(const Work &work, const Vector &impulse);
     void polish(const Work &work);
     Iterate iterate(const Work &work) const;
@@ -98,6 +99,7 @@ namespace nsfd
     void symmetrise(const Work &work, bool convex);
     double slope(const Work &work, double length) const;
     void set_right_side(const Work &work);
+    void keep_defect(const Work &work);
     bool rests(const Work &work, std::size_t i) const;
     void keep_tangents_at_rest(const Work &work);
     void remove_springs(const Work &work);
@@ -110,6 +112,7 @@ namespace nsfd
     void advance(const Work &work);
 
     NodeMotion *own_motion_ = nullptr;
+    std::vector<unsigned int> points_; ///< that act
     Vector impulse_, rest_, velocity_; ///< P, P_0, U
     Vector compliance_;                ///< A
     double rigid_ = last_share; ///< what rigid points give way by, over A

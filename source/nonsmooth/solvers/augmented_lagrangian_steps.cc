@@ -116,7 +116,7 @@ namespace nsfd
                                            const double share)
   {
     ++work.report.newton;
-    defect_ = right_side_;
+    keep_defect(work);
     const bool symmetric = differentiate(work);
     remove_springs(work);
     if (work.from_rest)
