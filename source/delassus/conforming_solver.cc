@@ -221,7 +221,8 @@ namespace nsfd
         GhostValues(communicator_, matrix_.first_row, n_own_, matrix_.ghosts);
     if (!multigrid_)
       multigrid_ = std::make_unique<Multigrid>(communicator_);
-    multigrid_->prepare(matrix_, space_->modes, space_->per_node);
+    multigrid_->set_matrix(matrix_);
+    multigrid_->build(space_->modes, space_->per_node);
     return true;
   }
 

@@ -23,7 +23,6 @@ namespace nsfd
     find_places();
     if (communicator.size() > 1)
       exchange_remote();
-    build_pattern();
   }
 
   template <int dim>
@@ -244,6 +243,8 @@ namespace nsfd
                                      const std::vector<double> &k,
                                      const std::vector<char> &left_out)
   {
+    if (matrix_.start.empty())
+      build_pattern(); // where nodes alone are asked for, it is not needed
     std::fill(matrix_.value.begin(), matrix_.value.end(), 0.);
     std::vector<double> row;
     for (std::size_t b = 0; b < bodies_.size(); ++b) {

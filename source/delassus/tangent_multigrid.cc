@@ -70,8 +70,9 @@ namespace nsfd
     diagonal_ = matrix.diagonal_blocks();
     limited_ = springs;
     limit(matrix, limited_);
-    coarser_.prepare(matrix.assemble(limited_.data()), matrix.space_->modes,
-                     matrix.size_, Multigrid::Finest::left);
+    coarser_.set_matrix(matrix.assemble(limited_.data()));
+    matrix.forget_values(); // before the hierarchy takes its room
+    coarser_.build(matrix.space_->modes, matrix.size_, Multigrid::Finest::left);
     matrix_ = &matrix;
     invert_diagonal(matrix);
     if (!adjust(matrix, springs))

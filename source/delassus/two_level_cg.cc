@@ -144,7 +144,8 @@ namespace nsfd
         factor_.reset();
         if (!multigrid_)
           multigrid_ = std::make_unique<Multigrid>(communicator_);
-        multigrid_->prepare(coarse_matrix, coarse.modes, coarse.per_node);
+        multigrid_->set_matrix(coarse_matrix);
+        multigrid_->build(coarse.modes, coarse.per_node);
       }
     }
 

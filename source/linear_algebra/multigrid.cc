@@ -26,10 +26,7 @@ namespace nsfd
 
   Multigrid::~Multigrid() = default;
 
-  void Multigrid::prepare(const SparseRows &matrix,
-                          const std::vector<std::vector<double>> &modes,
-                          const unsigned int equations_per_node,
-                          const Finest finest)
+  void Multigrid::set_matrix(const SparseRows &matrix)
   {
     library_ = std::make_unique<Library>();
     auto &lib = *library_;
@@ -53,7 +50,13 @@ namespace nsfd
                                      columns.data());
     }
     lib.matrix->FillComplete();
+  }
 
+  void Multigrid::build(const std::vector<std::vector<double>> &modes,
+                        const unsigned int equations_per_node,
+                        const Finest finest)
+  {
+    auto &lib = *library_;
     lib.modes.clear();
     for (const auto &mode : modes)
       lib.modes.insert(lib.modes.end(), mode.begin(), mode.end());

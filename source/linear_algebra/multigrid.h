@@ -17,11 +17,13 @@ namespace nsfd
     /// the coarser ones alone
     enum class Finest { smoothed, left };
 
-    /** @p modes: the near null space, one value per own row each. */
-    void prepare(const SparseRows &matrix,
-                 const std::vector<std::vector<double>> &modes,
-                 unsigned int equations_per_node,
-                 Finest finest = Finest::smoothed);
+    /** A copy of it: it need not stay. */
+    void set_matrix(const SparseRows &matrix);
+    /** Of that matrix; @p modes: the near null space, one value per own row
+        each. */
+    void build(const std::vector<std::vector<double>> &modes,
+               unsigned int equations_per_node,
+               Finest finest = Finest::smoothed);
     void apply(const double *b, double *x);
 
   private:

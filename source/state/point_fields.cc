@@ -1,8 +1,10 @@
 #include "point_fields.h"
 
+#include "core/pages_of_zeros.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace nsfd
 {
@@ -23,5 +25,17 @@ namespace nsfd
     default:
       return false;
     }
+  }
+
+  void release_zeros(State &state)
+  {
+    release_pages_of_zeros(state.displacement);
+    release_pages_of_zeros(state.velocity);
+    for_point_fields(
+        [&](const PointField &, const auto member, const auto &...) {
+          using List = std::decay_t<decltype(state.*member)>;
+          if constexpr (!std::is_same_v<List, std::vector<PointKind>>)
+            release_pages_of_zeros(state.*member);
+        });
   }
 } // namespace nsfd

@@ -40,6 +40,12 @@ namespace nsfd
   bool has_field(const SceneInput &input, const PointField &field);
 
   /**
+   * What is joined has no jump, no impulse and no history: most lists of the
+   * points are zeros, and need no memory where faces stay as they are.
+   */
+  void release_zeros(State &state);
+
+  /**
    * Call @p visit(PointField, member of State, born, added) for every field, in
    * the order of checkpoints: @p born is the value of a point of the mesh at
    * t = 0, @p added that of a contact of one step. A further field is a member

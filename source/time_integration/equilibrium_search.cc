@@ -10,6 +10,7 @@
 #include "core/stopwatch.h"
 #include "discretization/loads.h"
 #include "nsfd/core/archive.h"
+#include "state/point_fields.h"
 
 #include <fmt/format.h>
 
@@ -241,6 +242,7 @@ namespace nsfd
         found = true;
         best = report;
         best_next = next;
+        release_zeros(best_next);
         reactions = balance_->reactions();
       }
       // or a jump downhill, where no shorter step is to show another way
@@ -250,7 +252,7 @@ namespace nsfd
     }
     if (!found)
       throw StepRejected(failure);
-    next = best_next;
+    next = std::move(best_next);
     balance_->set_reactions(reactions);
     if (best.skips_peak)
       best.share = ahead.share;

@@ -4,13 +4,11 @@
 #include "joined_equilibrium.h"
 #include "joined_start.h"
 
-#include "core/pages_of_zeros.h"
 #include "joined/rigid_clusters.h"
 #include "nsfd/scene/scene_input.h"
 #include "state/point_fields.h"
 
 #include <algorithm>
-#include <type_traits>
 
 // What the steps of Leapfrog start from.
 
@@ -21,20 +19,6 @@ namespace nsfd
     bool is_interface(const PointOrigin &origin)
     {
       return origin.kind == PointOrigin::Kind::interface;
-    }
-
-    /** What is joined has no jump, no impulse and no history: most lists of the
-        points are zeros until faces are released, and to be shown then. */
-    void release_zeros(State &state)
-    {
-      release_pages_of_zeros(state.displacement);
-      release_pages_of_zeros(state.velocity);
-      for_point_fields(
-          [&](const PointField &, const auto member, const auto &...) {
-            using List = std::decay_t<decltype(state.*member)>;
-            if constexpr (!std::is_same_v<List, std::vector<PointKind>>)
-              release_pages_of_zeros(state.*member);
-          });
     }
   } // namespace
 

@@ -7,6 +7,7 @@
 
 #include "core/cost.h"
 #include "core/stopwatch.h"
+#include "state/point_fields.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,6 +66,7 @@ namespace nsfd
     std::fill(iterate_.at.velocity.begin(), iterate_.at.velocity.end(), 0.);
     std::fill(iterate_.at.relative_velocity.begin(),
               iterate_.at.relative_velocity.end(), 0.);
+    release_zeros(iterate_.at);
     iterate_.force = old.point_force;
     iterate_.force.resize(old.jump.size(), 0.);
     iterate_.activated.assign(old.kind.size(), 0);
