@@ -161,6 +161,19 @@ namespace nsfd
     }
   }
 
+  /** S - P of a support that is held. */
+  template <int dim>
+  double AugmentedLagrangian<dim>::left_of_support(const Work &work,
+                                                   const std::size_t i,
+                                                   const unsigned int c) const
+  {
+    const std::size_t k = i * dim + c;
+    return work.problem.mask[i] & (1u << c)
+               ? (work.problem.given_velocity[k] - velocity_[k]) /
+                     compliance_[k]
+               : 0.;
+  }
+
   /** |P - S|_R, and |P - P_0|_R, over |P|_R. */
   template <int dim>
   auto AugmentedLagrangian<dim>::errors(const Work &work) -> Errors
@@ -170,9 +183,11 @@ namespace nsfd
     for (std::size_t a = 0; a < n; ++a)
       for (unsigned int c = 0; c < dim; ++c) {
         const std::size_t i = work.problem.acting[a];
+        // what its spring makes of the last bit of U is no defect of a support
         const double R = work.evaluation.majorant(i, c),
                      P = impulse_[i * dim + c],
-                     defect = P - solutions_[i].impulse[c],
+                     defect = work.holds(i) ? left_of_support(work, i, c)
+                                            : P - solutions_[i].impulse[c],
                      shift = P - rest_[i * dim + c];
         terms[a] += R * P * P;
         terms[n + a] += R * defect * defect;
@@ -350,6 +365,10 @@ namespace nsfd
     for (unsigned int k = 0; k < 2 && !solved && jump(work, patience); ++k)
       solved = judge(); // anew where round-off was left
     Iterate start;      // of a stage
+    struct {
+      Iterate iterate;
+      double error = std::numeric_limits<double>::infinity();
+    } nearest; // of the full steps between stages
     if (!solved) {
       if (!work.from_rest)
         polish(work);
@@ -392,8 +411,11 @@ namespace nsfd
         solved = (!jumps ||
                   jump(work, work.from_rest ? patience : between_stages)) &&
                  judge();
-        if (!solved && jumps && !work.from_rest)
+        if (!solved && jumps) {
+          if (work.from_rest && evaluation.error < nearest.error)
+            nearest = {iterate(work), evaluation.error};
           return_to(work, start);
+        }
         if (work.from_rest && last)
           break;
         if (!last)
@@ -412,6 +434,10 @@ namespace nsfd
       answer(work, velocity_);
     }
     report.converged = solved || judge();
+    if (!report.converged && nearest.error < evaluation.error) {
+      return_to(work, nearest.iterate);
+      report.converged = judge();
+    }
     if (report.converged && !work.from_rest)
       hold_rows(work, control.row_energy);
     impulse = impulse_;

@@ -94,6 +94,8 @@ namespace nsfd
     void return_to(const Work &work, const Iterate &iterate);
     void soften(const Work &work, double share);
     void answer(const Work &work, const Vector &U);
+    double left_of_support(const Work &work, std::size_t i,
+                           unsigned int c) const;
     Errors errors(const Work &work);
     bool differentiate(const Work &work);
     void symmetrise(const Work &work, bool convex);

@@ -242,6 +242,8 @@ namespace nsfd
                                       const unsigned int most_idle)
   {
     constexpr double none = std::numeric_limits<double>::infinity();
+    // where points change sides at their peaks, a full step loses what is there
+    constexpr double near = 1e-6, away = 1e3;
     Iterate best = iterate(work);
     double least = none;
     std::array<double, 2> before{least, least};
@@ -277,8 +279,9 @@ namespace nsfd
       }
       const bool comes_back = std::abs(error - before[1]) < 1e-2 * error;
       before = {error, before[0]};
-      if (idle > most_idle || comes_back || !std::isfinite(error) ||
-          work.report.newton >= work.most)
+      const bool leads_away = least < near && error > away * least;
+      if (idle > most_idle || comes_back || leads_away ||
+          !std::isfinite(error) || work.report.newton >= work.most)
         break;
       set_right_side(work);
       // as far as a step of Newton's method is right; the next one makes good
