@@ -12,9 +12,9 @@ namespace nsfd
   /**
    * The bodies seen from the faces: H, M_hat^{-1} and W = H M_hat^{-1} H^T,
    * with M_hat = M + h^2 theta^2 K, and + h theta C where bodies are viscous,
-   * block diagonal by body; see set_kept_step() for explicit forces. Vectors over points
-   * are in the local frames, dim entries per point; vectors over bodies have
-   * Bodies::n_dofs() entries.
+   * block diagonal by body; see set_kept_step() for explicit forces. Vectors
+   * over points are in the local frames, dim entries per point; vectors over
+   * bodies have Bodies::n_dofs() entries.
    *
    * Both paths share this operator. They differ in how a Newton system
    * (W + D) x = r is preconditioned: on the local path by face blocks, on the

@@ -154,9 +154,8 @@ namespace nsfd
    * the time that is over. Rounding leaves a hundredth of it alone.
    */
   template <int dim>
-  bool
-  SmoothMotion<dim>::Equations::is_balanced(const State &next,
-                                            const StepReport &report) const
+  bool SmoothMotion<dim>::Equations::is_balanced(const State &next,
+                                                 const StepReport &report) const
   {
     constexpr double least_share = 0.01;
     const auto &time = this->input_.time;

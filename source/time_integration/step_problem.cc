@@ -5,6 +5,7 @@
 #include "energy_watch.h"
 #include "nonsmooth/linear_spring.h"
 #include "nonsmooth/row_work.h"
+#include "row_system.h"
 #include "step_data.h"
 
 #include "nsfd/scene/scene_input.h"
@@ -107,10 +108,12 @@ namespace nsfd
       settle(problem, control, energy_scale, impulse, evaluation, report);
       report.rests = stays();
     }
+    if (report.converged && problem.free_motion == FreeVelocity::known)
+      renew_rows(problem, control, energy_scale, impulse, evaluation, report);
     if (report.converged &&
         gives_by_contact(problem, control, old, impulse, evaluation))
-      solve_closer(solver, problem, control, energy_scale, impulse, evaluation,
-                   report);
+      solve_closer(solver, problem, control, energy_scale, old, impulse,
+                   evaluation, report);
     if (report.converged && problem.free_motion == FreeVelocity::known &&
         gives_by_rows(problem, control, energy_scale, impulse, evaluation))
       hold_rows(problem, control, energy_scale, impulse, evaluation, report);
@@ -202,23 +205,24 @@ namespace nsfd
   }
 
   template <int dim>
-  void StepProblem<dim>::solve_closer(NonsmoothSolver<dim> &solver,
-                                      const OneStepProblem<dim> &problem,
-                                      SolverControl control,
-                                      const double energy_scale,
-                                      std::vector<double> &impulse,
-                                      LawEvaluation<dim> &evaluation,
-                                      SolverReport &report)
+  void StepProblem<dim>::solve_closer(
+      NonsmoothSolver<dim> &solver, const OneStepProblem<dim> &problem,
+      SolverControl control, const double energy_scale, const State &old,
+      std::vector<double> &impulse, LawEvaluation<dim> &evaluation,
+      SolverReport &report)
   {
     if (problem.free_motion == FreeVelocity::known) {
       settle(problem, control, energy_scale, impulse, evaluation, report);
-      return;
+      if (!gives_by_contact(problem, control, old, impulse, evaluation))
+        return;
     }
-    // only the solver itself knows the motion of the nodes
+    // only the solver itself knows the motion of the nodes, or other ways than
+    // that of Newton, which has led here
     const std::vector<double> before(impulse);
     const double error = evaluation.error;
     control.tolerance = std::max(1e-14, 1e-3 * control.tolerance);
-    control.maximum_iterations = 10;
+    if (problem.free_motion != FreeVelocity::known)
+      control.maximum_iterations = 10;
     report.add_work(solver.solve(problem, delassus_, energy_scale, control,
                                  impulse, evaluation));
     if (!(evaluation.error < error)) {
@@ -274,6 +278,60 @@ namespace nsfd
       evaluation.update(impulse);
       report.residual = error;
     }
+  }
+
+  /**
+   * Rows that depend on each other hold each other by impulses of any size that
+   * move nothing, and a hard problem may leave large ones. They would be kept
+   * from step to step, and times the last bits of velocities they are an
+   * energy. Impulses far beyond what there is to move are such ones: from none,
+   * conjugate gradients find those that do the same and have none of it.
+   */
+  template <int dim>
+  void StepProblem<dim>::renew_rows(const OneStepProblem<dim> &problem,
+                                    const SolverControl &control,
+                                    const double energy_scale,
+                                    std::vector<double> &impulse,
+                                    LawEvaluation<dim> &evaluation,
+                                    SolverReport &report)
+  {
+    constexpr double most = 1e3, last_bits = 1e-15;
+    const Communicator &all = delassus_.communicator();
+    const auto held = [&] {
+      return row_work(problem, all, evaluation.velocity, impulse).impulses;
+    };
+    const double present = held();
+    if (!(present > most * energy_scale))
+      return;
+    const std::size_t n = impulse.size();
+    std::vector<double> D(n, -1.), of_rows(n, 0.), b(n), less(n, 0.), terms(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t i = k / dim, c = k % dim;
+      if (problem.kind[i] != PointKind::prescribed ||
+          !(problem.mask[i] & (1u << c)))
+        continue;
+      D[k] = 0.;
+      of_rows[k] = impulse[k];
+      terms[k] = impulse[k] * (c == 0 ? problem.majorant_normal
+                                      : problem.majorant_tangential)[i];
+    }
+    delassus_.apply_delassus(of_rows.data(), b.data());
+    RowSystem<dim> rows(delassus_, problem.n_owned);
+    rows.set(D);
+    rows.solve(b,
+               last_bits * std::sqrt(all.dot(terms.data(), terms.data(),
+                                             problem.n_owned * dim)),
+               less);
+    const std::vector<double> before(impulse);
+    for (std::size_t k = 0; k < n; ++k)
+      if (D[k] == 0.)
+        impulse[k] = less[k];
+    evaluation.update(impulse);
+    if (!(evaluation.error <= control.tolerance) || !(held() < present / 2.)) {
+      impulse = before;
+      evaluation.update(impulse);
+    }
+    report.residual = evaluation.error;
   }
 
   /** By Newton's method, if it comes closer. */

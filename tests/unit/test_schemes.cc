@@ -90,13 +90,12 @@ end
     // the fastest mode.
     TEST(SymplecticTest, KeepsItsEnergyInStepsOfAnyLength)
     {
-      test::Scene<2> apart(plate,
-                           {"Material: plate/initial velocity x=9 * x",
-                            "Material: plate/initial velocity y=7 * y",
-                            "Time/step=auto"});
+      test::Scene<2> apart(plate, {"Material: plate/initial velocity x=9 * x",
+                                   "Material: plate/initial velocity y=7 * y",
+                                   "Time/step=auto"});
       expect_energy_kept(apart, {1., 0.5, 0.125, 0.7, 0.7});
-      test::Scene<2> bonded(plate, {"Interface: all/law=bonded",
-                                    "Time/step=0.04 courant"});
+      test::Scene<2> bonded(
+          plate, {"Interface: all/law=bonded", "Time/step=0.04 courant"});
       expect_energy_kept(bonded, {1., 0.5, 0.125, 0.7, 0.7});
     }
 
