@@ -77,14 +77,8 @@ namespace nsfd
           return false;
         const Edge &edge = surfaces_.edges[pair.edge],
                    &other = surfaces_.edges[pair.other];
-        const bool sharp = sticks_out(edge, planes_, a.way),
-                   other_sharp = sticks_out(other, planes_, b.way);
-        // A sharp edge sinks into a surface that is bent between its corners
-        // where it crosses the edges there, however flat these are.
-        const bool across = sharp != other_sharp;
-        if (!sharp && !other_sharp)
-          return false;
-        if (across && !is_flat(sharp ? other : edge))
+        if (!sticks_out(edge, planes_, a.way) ||
+            !sticks_out(other, planes_, b.way))
           return false;
         const double lack =
             lack_of_room(inward(edge, planes_, a.way), a_length,
@@ -96,21 +90,12 @@ namespace nsfd
                                 : 0.;
         if (lack > std::max(cone_room, turn))
           return false;
-        pair.is_sure = lack <= cone_room && !across;
+        pair.is_sure = lack <= cone_room;
         pair.closest = sum(b.from, pair.other_place, b.way);
-        // on a flat surface corners alone hold what lies on it
-        if (across && pair.gap > -same_length * size)
-          return false;
         return pair.gap <= reach_ && pair.gap >= -deepest * size;
       }
 
     private:
-      bool is_flat(const Edge &edge) const
-      {
-        return dot(planes_[edge.facet[0]].normal,
-                   planes_[edge.facet[1]].normal) >= flat;
-      }
-
       static double to_end(const double place)
       {
         return std::min(place, 1. - place);

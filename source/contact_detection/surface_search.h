@@ -116,8 +116,7 @@ namespace nsfd
     double gap = 0.;
     std::array<double, dim> normal{}, closest{}; ///< closest: on the other
     double place = 0., other_place = 0.;
-    /// which way is out, not only after a turn, and not on a flat surface
-    bool is_sure = false;
+    bool is_sure = false; ///< which way is out, not only after a turn
   };
 
   template <int dim>

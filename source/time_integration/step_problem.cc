@@ -109,7 +109,8 @@ namespace nsfd
       report.rests = stays();
     }
     if (report.converged && problem.free_motion == FreeVelocity::known)
-      renew_rows(problem, control, energy_scale, impulse, evaluation, report);
+      renew_rows(solver, problem, control, energy_scale, impulse, evaluation,
+                 report);
     if (report.converged &&
         gives_by_contact(problem, control, old, impulse, evaluation))
       solve_closer(solver, problem, control, energy_scale, old, impulse,
@@ -282,13 +283,16 @@ namespace nsfd
 
   /**
    * Rows that depend on each other hold each other by impulses of any size that
-   * move nothing, and a hard problem may leave large ones. They would be kept
-   * from step to step, and times the last bits of velocities they are an
-   * energy. Impulses far beyond what there is to move are such ones: from none,
-   * conjugate gradients find those that do the same and have none of it.
+   * move nothing, and a hard problem may leave large ones. The residual is
+   * relative to the impulses: beside those the others are not solved at all,
+   * and times the last bits of velocities they are an energy. Impulses of rows
+   * far beyond what there is to move are found again from none, by conjugate
+   * gradients; where they fall, what is left over is solved once more, and the
+   * report says how far that has come.
    */
   template <int dim>
-  void StepProblem<dim>::renew_rows(const OneStepProblem<dim> &problem,
+  void StepProblem<dim>::renew_rows(NonsmoothSolver<dim> &solver,
+                                    const OneStepProblem<dim> &problem,
                                     const SolverControl &control,
                                     const double energy_scale,
                                     std::vector<double> &impulse,
@@ -301,37 +305,44 @@ namespace nsfd
       return row_work(problem, all, evaluation.velocity, impulse).impulses;
     };
     const double present = held();
-    if (!(present > most * energy_scale))
+    if (!std::isfinite(control.row_energy) || // statics
+        !(present > most * energy_scale))
       return;
-    const std::size_t n = impulse.size();
-    std::vector<double> D(n, -1.), of_rows(n, 0.), b(n), less(n, 0.), terms(n);
-    for (std::size_t k = 0; k < n; ++k) {
-      const std::size_t i = k / dim, c = k % dim;
-      if (problem.kind[i] != PointKind::prescribed ||
-          !(problem.mask[i] & (1u << c)))
-        continue;
-      D[k] = 0.;
-      of_rows[k] = impulse[k];
-      terms[k] = impulse[k] * (c == 0 ? problem.majorant_normal
-                                      : problem.majorant_tangential)[i];
-    }
-    delassus_.apply_delassus(of_rows.data(), b.data());
-    RowSystem<dim> rows(delassus_, problem.n_owned);
-    rows.set(D);
-    rows.solve(b,
-               last_bits * std::sqrt(all.dot(terms.data(), terms.data(),
-                                             problem.n_owned * dim)),
-               less);
     const std::vector<double> before(impulse);
+    const std::size_t n = impulse.size();
+    std::vector<double> D(n, -1.), wanted(n, 0.), found(n, 0.);
+    for (std::size_t k = 0; k < n; ++k)
+      if (problem.kind[k / dim] == PointKind::prescribed &&
+          problem.mask[k / dim] & (1u << k % dim)) {
+        D[k] = 0.;
+        impulse[k] = 0.;
+      }
+    evaluation.update(impulse);
     for (std::size_t k = 0; k < n; ++k)
       if (D[k] == 0.)
-        impulse[k] = less[k];
+        wanted[k] = problem.given_velocity[k] - evaluation.velocity[k];
+    RowSystem<dim> rows(delassus_, problem.n_owned);
+    rows.set(D);
+    rows.solve(wanted,
+               last_bits * std::sqrt(all.dot(wanted.data(), wanted.data(),
+                                             problem.n_owned * dim)),
+               found);
+    for (std::size_t k = 0; k < n; ++k)
+      if (D[k] == 0.)
+        impulse[k] = found[k];
     evaluation.update(impulse);
-    if (!(evaluation.error <= control.tolerance) || !(held() < present / 2.)) {
+    if (!(held() < present / most)) { // they move something
       impulse = before;
       evaluation.update(impulse);
+      return;
     }
     report.residual = evaluation.error;
+    if (evaluation.error <= control.tolerance)
+      return;
+    const SolverReport again = solver.solve(problem, delassus_, energy_scale,
+                                            control, impulse, evaluation);
+    report.go_on_with(again);
+    report.converged = again.converged && !(held() > most * energy_scale);
   }
 
   /** By Newton's method, if it comes closer. */

@@ -91,7 +91,8 @@ namespace nsfd
     void hold_rows(const OneStepProblem<dim> &problem, SolverControl control,
                    double energy_scale, std::vector<double> &impulse,
                    LawEvaluation<dim> &evaluation, SolverReport &report);
-    void renew_rows(const OneStepProblem<dim> &problem,
+    void renew_rows(NonsmoothSolver<dim> &solver,
+                    const OneStepProblem<dim> &problem,
                     const SolverControl &control, double energy_scale,
                     std::vector<double> &impulse,
                     LawEvaluation<dim> &evaluation, SolverReport &report);

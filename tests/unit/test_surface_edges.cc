@@ -318,35 +318,4 @@ namespace surface_scene::test_surface_edges
         EXPECT_GT(std::abs(pair.normal[2]), 0.9) << height;
     }
   }
-
-  /** Two cells of a surface, raised at their end that a box overhangs: between
-      its corners the edge of the box sinks into them where it crosses the edge
-      that they share, however flat that is. */
-  TEST(SurfaceEdges, SharpEdgeAcrossAFlatOne)
-  {
-    constexpr double rise = 0.03, place = 0.25;
-    const auto pairs_at = [&](const double height) {
-      Scene<3> scene;
-      for (const double y : {0., 1., 2.})
-        for (const double x : {0., 1.})
-          scene.vertex({x, y, x == 0. ? rise : 0.});
-      scene.facet(0, {0, 1, 3, 2});
-      scene.facet(0, {2, 3, 5, 4});
-      add_box(scene, 1, {place, 0.3, height}, {1.5, 1.7, height + 1.});
-      scene.all_points();
-      scene.all_edges();
-      return scene.find(0.01).edges;
-    };
-    const double surface = rise * (1. - place),
-                 along = 1. / std::sqrt(1. + rise * rise);
-    const auto inside = pairs_at(0.);
-    ASSERT_EQ(inside.size(), 1u);
-    EXPECT_NEAR(inside[0].gap, -surface * along, 1e-14);
-    EXPECT_NEAR(inside[0].normal[2], -along, 1e-14);
-    EXPECT_NEAR(std::min(inside[0].place, 1. - inside[0].place), place, 1e-14);
-    EXPECT_NEAR(inside[0].other_place, 0.5, 1e-14);
-    // on it corners alone hold
-    EXPECT_TRUE(pairs_at(surface).empty());
-    EXPECT_TRUE(pairs_at(surface + 1e-3).empty());
-  }
 } // namespace surface_scene::test_surface_edges
