@@ -75,12 +75,16 @@ namespace nsfd
     order_unknowns();
   }
 
-  /** Of clusters that reach far, those of one place next to each other. */
+  /** Of clusters of nodes that contacts join, those of one place next to each
+      other: around one node everything is near. */
   template <int dim>
   void NodeSystem<dim>::order_unknowns()
   {
     constexpr int few = 64;
-    if (n_unknowns_ <= few)
+    const bool joined =
+        std::any_of(points_.begin(), points_.begin() + long(n_),
+                    [](const Point &point) { return point.ends != nullptr; });
+    if (n_unknowns_ <= few || !joined)
       return;
     std::vector<std::vector<int>> neighbors(std::size_t(n_unknowns_ / dim));
     std::vector<int> here;
