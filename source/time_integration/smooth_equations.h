@@ -79,7 +79,7 @@ namespace nsfd
       double velocity = 0., displacement = 0., energy = 0.;
       double inner_step = 0.;
       double share = 1.; ///< of the tolerance of the input
-    } scales_; ///< of the tolerances, and the step of the pairs, s
+    } scales_;           ///< of the tolerances, and the step of the pairs, s
     struct LoadsAt {
       double time = 0.;
       bool known = false;
