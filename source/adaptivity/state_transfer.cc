@@ -30,6 +30,7 @@ namespace nsfd
       to.step = from.step;
       to.time = from.time;
       to.last_step = from.last_step;
+      to.kept_step = from.kept_step;
       to.viscous_traction = from.viscous_traction;
       to.energy = from.energy;
       to.initial_energy = from.initial_energy;

@@ -55,7 +55,8 @@ namespace nsfd
 
   /** Both ranks of two bodies know all faces between them. */
   template <int dim>
-  void SurfaceContacts<dim>::part(State &state) const
+  void SurfaceContacts<dim>::part(State &state,
+                                  const std::vector<char> &alone) const
   {
     const auto &faces = discretization_.points().faces;
     const auto bodies_of = [&](const std::size_t f) {
@@ -77,11 +78,14 @@ namespace nsfd
           held.insert(pair(f));
     std::vector<unsigned int> opened;
     for (std::size_t f = 0; f < faces.size(); ++f) {
-      if (!is_between(f) || held.count(pair(f)) > 0)
+      if (!is_between(f))
         continue;
+      const bool holds = held.count(pair(f)) > 0;
       bool opens = false;
       for (unsigned int i = faces[f].first; i < faces[f].first + faces[f].count;
            ++i) {
+        if (holds && (alone.empty() || !alone[i]))
+          continue;
         opens = opens || state.kind[i] != PointKind::separated;
         state.kind[i] = PointKind::separated;
       }

@@ -50,9 +50,10 @@ namespace nsfd
 
     /**
      * Points between two bodies that nothing holds together any more are left
-     * to the search: `separated`. Collective.
+     * to the search: `separated`. Collective. Those marked as @p alone are,
+     * whatever else holds there; empty: none.
      */
-    void part(State &state) const;
+    void part(State &state, const std::vector<char> &alone = {}) const;
     /** After the step of the last call of rows(). */
     void store_facets(State &next) const;
 

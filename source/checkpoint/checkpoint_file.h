@@ -14,7 +14,7 @@ namespace nsfd
    */
   namespace checkpoint_file
   {
-    constexpr unsigned int format = 8;
+    constexpr unsigned int format = 9;
     constexpr std::size_t head_size = 512;
 
     /** Number and commit of this program. */

@@ -12,9 +12,9 @@ namespace nsfd
   /**
    * The bodies seen from the faces: H, M_hat^{-1} and W = H M_hat^{-1} H^T,
    * with M_hat = M + h^2 theta^2 K, and + h theta C where bodies are viscous,
-   * block diagonal by body. Vectors over points
-   * are in the local frames, dim entries per point; vectors over bodies have
-   * Bodies::n_dofs() entries.
+   * block diagonal by body; see set_kept_step() for explicit forces. Vectors
+   * over points are in the local frames, dim entries per point; vectors over
+   * bodies have Bodies::n_dofs() entries.
    *
    * Both paths share this operator. They differ in how a Newton system
    * (W + D) x = r is preconditioned: on the local path by face blocks, on the
@@ -165,11 +165,25 @@ namespace nsfd
     }
     double viscous_theta() const { return viscous_theta_; }
 
+    /**
+     * Forces act in the middle of steps that keep
+     * v.(M - @p step^2 K / 4) v / 2 + q.K q / 2, whatever their own length is:
+     * from the next reinit() on M_hat has -(step^2 - h^2) K / 4 as well, and is
+     * positive while @p step is stable. 0: forces are not explicit.
+     */
+    void set_kept_step(const double step)
+    {
+      if (shares(time_step_, theta_).stiffness !=
+          shares(time_step_, theta_, step).stiffness)
+        time_step_ = 0.; // another M_hat
+      kept_step_ = step;
+    }
+    double kept_step() const { return kept_step_; }
+
     /** What M_hat of a step consists of. */
     StepShares shares(const double time_step, const double theta) const
     {
-      return {time_step * time_step * theta * theta,
-              time_step * viscous_theta_};
+      return shares(time_step, theta, kept_step_);
     }
 
     struct Counters {
@@ -221,7 +235,15 @@ namespace nsfd
     const std::vector<double> *free_velocity_ = nullptr;
 
   private:
+    StepShares shares(const double h, const double theta,
+                      const double kept) const
+    {
+      const double lost = kept > 0. ? (kept - h) * (kept + h) / 4. : 0.;
+      return {h * h * theta * theta - lost, h * viscous_theta_};
+    }
+
     double viscous_theta_ = 0.; ///< 0: nothing is viscous
+    double kept_step_ = 0.;     ///< see set_kept_step(), s
   };
 
   /**

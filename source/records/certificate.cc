@@ -137,8 +137,11 @@ namespace nsfd
                           within(defect <= largest_defect));
       if (line.verdict == Verdict::bad)
         line.remark =
-            "the energy balance is violated: joints may be redundant; "
-            "energies.svg shows when";
+            facts.smooth_steps == accepted(facts)
+                ? "what the integration leaves: lower Time/integration "
+                  "tolerance"
+                : "the energy balance is violated: joints may be redundant; "
+                  "energies.svg shows when";
       return line;
     }
 

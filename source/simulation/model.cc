@@ -65,6 +65,7 @@ namespace nsfd
         explicit_limit = stable_limit(input, communicator);
         control = dynamic_control(input, 0.);
         check_stability(input, communicator, problems);
+        delassus->set_kept_step(longest_explicit_step());
       }
       if (!problems.empty())
         return problems;
@@ -198,9 +199,10 @@ namespace nsfd
     build_delassus(input, communicator);
     delassus->continue_counters(delassus_counters);
     if (input.time.scheme.explicit_forces) {
-      const double limit = stable_limit(input, communicator);
-      control->limit(limit);
-      control->set_ceiling(limit);
+      explicit_limit = stable_limit(input, communicator);
+      control->limit(explicit_limit);
+      control->set_ceiling(explicit_limit);
+      delassus->set_kept_step(longest_explicit_step());
     }
     delassus->reinit(control->step(), input.time.bulk_theta());
     build_integrators(input, communicator, problems);

@@ -53,6 +53,8 @@ namespace nsfd
 
     /** Step in time that the input asks for, s. */
     double dynamic_step(const SceneInput &input) const;
+    /** Of steps with explicit forces on the present mesh, s. */
+    double longest_explicit_step() const;
     /** Steps in time from @p start on. */
     std::unique_ptr<StepControl> dynamic_control(const SceneInput &input,
                                                  double start) const;

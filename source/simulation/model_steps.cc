@@ -164,6 +164,15 @@ namespace nsfd
   }
 
   template <int dim>
+  double Model<dim>::longest_explicit_step() const
+  {
+    double step = control->base_step();
+    while (step > explicit_limit)
+      step /= 2.;
+    return step;
+  }
+
+  template <int dim>
   std::unique_ptr<StepControl>
   Model<dim>::dynamic_control(const SceneInput &input, const double start) const
   {
@@ -198,6 +207,8 @@ namespace nsfd
                                           std::vector<std::string> &);
   template double Model<2>::dynamic_step(const SceneInput &) const;
   template double Model<3>::dynamic_step(const SceneInput &) const;
+  template double Model<2>::longest_explicit_step() const;
+  template double Model<3>::longest_explicit_step() const;
   template std::unique_ptr<StepControl>
   Model<2>::dynamic_control(const SceneInput &, double) const;
   template std::unique_ptr<StepControl>

@@ -105,10 +105,7 @@ namespace nsfd
       case WatchedLine::supports:
         return "lower Solver/tolerance; joints may be redundant";
       case WatchedLine::scheme:
-        return time.scheme.explicit_forces
-                   ? "steps have changed their length: set step to a shorter "
-                     "time, or scheme = moreau-jean"
-               : time.cohesion_rule != CohesionRule::exact && !input.statics
+        return time.cohesion_rule != CohesionRule::exact && !input.statics
                    ? "set cohesion rule = exact"
                    : "set step to a shorter time";
       case WatchedLine::load_steps:
@@ -119,7 +116,7 @@ namespace nsfd
       }
     }
 
-    /** The time scheme does, in steps of one length if they are explicit. */
+    /** The time scheme does. */
     bool keeps_energy(const SceneInput &input)
     {
       const TimeInput &time = input.time;

@@ -34,6 +34,8 @@ namespace nsfd
       limit = std::min(limit, limits.stable_share() * model_.explicit_limit);
       any = true;
     }
+    if (input_.time.scheme.explicit_forces) // of the present mesh
+      limit = std::min(limit, model_.explicit_limit);
     if (!any)
       return;
     if (control.time() < redo_until_)

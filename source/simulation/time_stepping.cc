@@ -51,6 +51,8 @@ namespace nsfd
     const auto note = [this](const std::string &text) {
       print_problems(communicator_, input_, "note", {text});
     };
+    if (input_.time.scheme.explicit_forces)
+      model_.delassus->set_kept_step(model_.longest_explicit_step());
     switch (controller_.step(integrator(), state, next, report, failure)) {
     case Result::taken:
       if (!report.note.empty())

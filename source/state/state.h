@@ -29,6 +29,7 @@ namespace nsfd
     unsigned int step = 0;
     double time = 0.;
     double last_step = 0.; ///< that led here, s; 0 at the start
+    double kept_step = 0.; ///< of explicit forces, see ElasticForces, s
     std::vector<double> displacement, velocity;
     std::vector<double> jump;              ///< u, m
     std::vector<double> relative_velocity; ///< U, m/s

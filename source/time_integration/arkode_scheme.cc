@@ -93,7 +93,8 @@ namespace nsfd
                      "write 6 or 8");
       smooth.tolerance = reader.number(
           "integration tolerance", "1e-9", units::none, {0., 0.1, true, false},
-          "error of a step relative to the largest motion");
+          "error of a step relative to the largest motion, and of the energy "
+          "balance");
     }
 
   private:

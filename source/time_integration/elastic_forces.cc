@@ -27,10 +27,10 @@ namespace nsfd
     in_step_.resize(old.velocity.size());
     for (std::size_t i = 0; i < in_step_.size(); ++i)
       in_step_[i] = start_.of_displacement[i] + h / 2. * start_.of_velocity[i];
-    share_of_step_ = h == old.last_step
-                         ? 0.
-                         : (h - old.last_step) * (h + old.last_step) / 8. *
-                               product(old.velocity, start_);
+    const double kept = delassus_.kept_step(), before = old.kept_step;
+    share_of_step_ = kept == before ? 0.
+                                    : (kept - before) * (kept + before) / 8. *
+                                          product(old.velocity, start_);
   }
 
   template <int dim>
@@ -42,7 +42,7 @@ namespace nsfd
   template <int dim>
   double ElasticForces<dim>::kinetic_share(const State &state) const
   {
-    return state.last_step * state.last_step / 8. *
+    return state.kept_step * state.kept_step / 8. *
            product(state.velocity, end_);
   }
 

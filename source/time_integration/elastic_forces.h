@@ -10,8 +10,8 @@ namespace nsfd
   /**
    * K q and K v at both ends of explicit steps, which act with
    * K (q_k + h v_k / 2). The energy that they keep is
-   * v.(M - h^2 K / 4) v / 2 + q.K q / 2, and what asks for its parts after a
-   * step asks for the forces of the next one.
+   * v.(M - h_0^2 K / 4) v / 2 + q.K q / 2, h_0 the kept step of the bodies, and
+   * what asks for its parts after a step asks for the forces of the next one.
    */
   template <int dim>
   class ElasticForces
@@ -29,11 +29,11 @@ namespace nsfd
     const std::vector<double> &in_step() const { return in_step_; }
     const std::vector<double> &at_end() const { return end_.of_displacement; }
 
-    /** h^2 v.K v / 8 at the end of the last step, @p state, of length h.
-        Collective. */
+    /** h_0^2 v.K v / 8 at the end of the last step, @p state. Collective. */
     double kinetic_share(const State &state) const;
     /** What the present step takes from the energy that is kept because the
-        one before had another length: (h^2 - h_k^2) v_k.K v_k / 8, J. */
+        one before kept that of another h_0, as the first one and one on
+        another mesh: (h_0^2 - h_0,k^2) v_k.K v_k / 8, J. */
     double share_of_step() const { return share_of_step_; }
 
   private:

@@ -113,9 +113,11 @@ namespace nsfd
 
   template <int dim>
   std::vector<unsigned int>
-  LeapfrogContacts<dim>::part(const LeapfrogChains<dim> &chains)
+  LeapfrogContacts<dim>::part(const LeapfrogChains<dim> &chains,
+                              const double way)
   {
     std::vector<unsigned int> parted;
+    std::vector<char> alone(state_.kind.size(), 0);
     for (std::size_t a = 0; a < chains.size(); ++a) {
       const unsigned int i = chains.point[a];
       if (chains.is_left(a)) {
@@ -124,6 +126,8 @@ namespace nsfd
           parted.push_back(i);
         continue;
       }
+      alone[i] = overlaps(chains, a, way) ||
+                 (chains.is_broken(a) && has_slid_off(chains, a));
       // one of the two chains of a point may still hold
       const PointKind other = chains.other.kind[a];
       state_.kind[i] = has_slid_off(chains, a)    ? PointKind::free
@@ -131,7 +135,7 @@ namespace nsfd
                                                   : other;
     }
     const auto before = state_.kind;
-    surfaces_.part(state_);
+    surfaces_.part(state_, alone);
     for (std::size_t i = 0; i < before.size(); ++i)
       if (state_.kind[i] == PointKind::separated &&
           before[i] != PointKind::separated)
@@ -139,17 +143,40 @@ namespace nsfd
     return parted;
   }
 
+  namespace
+  {
+    /** Both chains of a point softened or broken, and contact holds there. */
+    template <int dim>
+    bool has_no_spring(const LeapfrogChains<dim> &chains, const std::size_t a)
+    {
+      const auto softens = [](const PointKind kind) {
+        return kind == PointKind::cohesive || kind == PointKind::free;
+      };
+      const OneStepProblem<dim> &p = chains.problem;
+      return !chains.is_left(a) && softens(p.kind[a]) &&
+             softens(chains.other.kind[a]) &&
+             p.compression_stiffness[a] + chains.other.compression[a] == 0.;
+    }
+  } // namespace
+
+  template <int dim>
+  bool LeapfrogContacts<dim>::overlaps(const LeapfrogChains<dim> &chains,
+                                       const std::size_t a,
+                                       const double way) const
+  {
+    constexpr double round_off = 1e-12;
+    // the other half is for the step in which it is seen
+    return has_no_spring(chains, a) &&
+           -chains.problem.jump_free[a * dim] - chains.released[a] >
+               std::max(way / 2., round_off * face_size_[chains.point[a]]);
+  }
+
   template <int dim>
   bool LeapfrogContacts<dim>::has_slid_off(const LeapfrogChains<dim> &chains,
                                            const std::size_t a) const
   {
-    const auto softens = [](const PointKind kind) {
-      return kind == PointKind::cohesive || kind == PointKind::free;
-    };
     const OneStepProblem<dim> &p = chains.problem;
-    if (chains.is_left(a) || !softens(p.kind[a]) ||
-        !softens(chains.other.kind[a]) ||
-        p.compression_stiffness[a] + chains.other.compression[a] > 0.)
+    if (!has_no_spring(chains, a))
       return false;
     double square = 0.;
     for (unsigned int c = 1; c < dim; ++c)

@@ -50,8 +50,14 @@ namespace nsfd
     void start(const State &state);
 
     /** Points of the mesh that are left to the search now, by what active ones
-        are. */
-    std::vector<unsigned int> part(const LeapfrogChains<dim> &chains);
+        are; @p way as for overlaps(). */
+    std::vector<unsigned int> part(const LeapfrogChains<dim> &chains,
+                                   double way);
+    /** Active point @p a has no spring left, and its two sides overlap by more
+        than they can have closed on the largest @p way of a step: its face has
+        turned after it has slid. */
+    bool overlaps(const LeapfrogChains<dim> &chains, std::size_t a,
+                  double way) const;
     /** Active point @p a softens, and has slid so far that its two sides touch
         other places than each other. */
     bool has_slid_off(const LeapfrogChains<dim> &chains, std::size_t a) const;

@@ -236,12 +236,13 @@ namespace nsfd
                : kind == PointKind::cohesive ? 1
                                              : 0;
         n += chains.is_left(a) || contacts_->has_slid_off(chains, a);
+        n += chains.is_left(a) || contacts_->overlaps(chains, a, way_);
       }
       return n + chains.size();
     };
     if (n_open() == n_open_)
       return false;
-    const auto parted = contacts_->part(points.chains());
+    const auto parted = contacts_->part(points.chains(), way_);
     for (const unsigned int point : parted)
       points.part(point);
     n_open_ = n_open();

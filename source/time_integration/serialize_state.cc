@@ -40,7 +40,7 @@ namespace nsfd
   {
     const Archive::Part part(archive, "state");
     archive.numbers("step", s.step);
-    archive.numbers("time", s.time, s.last_step);
+    archive.numbers("time", s.time, s.last_step, s.kept_step);
     archive.bodies("displacement", s.displacement);
     archive.bodies("velocity", s.velocity);
     for_point_fields(

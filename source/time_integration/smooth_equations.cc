@@ -105,7 +105,7 @@ namespace nsfd
   {
     const Archive::Part part(archive, "smooth_motion");
     archive.numbers("scales", scales_.velocity, scales_.displacement,
-                    scales_.energy, scales_.inner_step);
+                    scales_.energy, scales_.inner_step, scales_.share);
     archive.points("row_forces", work_.lambda); // where their iterations start
   }
 

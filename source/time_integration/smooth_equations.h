@@ -78,7 +78,8 @@ namespace nsfd
     struct Scales {
       double velocity = 0., displacement = 0., energy = 0.;
       double inner_step = 0.;
-    } scales_; ///< of the tolerances, and the step of the pairs, s
+      double share = 1.; ///< of the tolerance of the input
+    } scales_;           ///< of the tolerances, and the step of the pairs, s
     struct LoadsAt {
       double time = 0.;
       bool known = false;

@@ -47,7 +47,9 @@ namespace nsfd
 
     /**
      * From @p old over @p time_step, in as many steps of the pairs as the
-     * tolerance asks for. Rejected is what ARKODE gives up. Collective.
+     * tolerance asks for, and with a smaller one where the energy balance is
+     * off by more than the tolerance. Rejected is what ARKODE gives up.
+     * Collective.
      */
     StepReport advance(const State &old, double time_step, State &next,
                        unsigned int idle_rounds) override;

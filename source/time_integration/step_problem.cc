@@ -5,6 +5,7 @@
 #include "energy_watch.h"
 #include "nonsmooth/linear_spring.h"
 #include "nonsmooth/row_work.h"
+#include "row_system.h"
 #include "step_data.h"
 
 #include "nsfd/scene/scene_input.h"
@@ -107,10 +108,13 @@ namespace nsfd
       settle(problem, control, energy_scale, impulse, evaluation, report);
       report.rests = stays();
     }
+    if (report.converged && problem.free_motion == FreeVelocity::known)
+      renew_rows(solver, problem, control, energy_scale, impulse, evaluation,
+                 report);
     if (report.converged &&
         gives_by_contact(problem, control, old, impulse, evaluation))
-      solve_closer(solver, problem, control, energy_scale, impulse, evaluation,
-                   report);
+      solve_closer(solver, problem, control, energy_scale, old, impulse,
+                   evaluation, report);
     if (report.converged && problem.free_motion == FreeVelocity::known &&
         gives_by_rows(problem, control, energy_scale, impulse, evaluation))
       hold_rows(problem, control, energy_scale, impulse, evaluation, report);
@@ -202,23 +206,24 @@ namespace nsfd
   }
 
   template <int dim>
-  void StepProblem<dim>::solve_closer(NonsmoothSolver<dim> &solver,
-                                      const OneStepProblem<dim> &problem,
-                                      SolverControl control,
-                                      const double energy_scale,
-                                      std::vector<double> &impulse,
-                                      LawEvaluation<dim> &evaluation,
-                                      SolverReport &report)
+  void StepProblem<dim>::solve_closer(
+      NonsmoothSolver<dim> &solver, const OneStepProblem<dim> &problem,
+      SolverControl control, const double energy_scale, const State &old,
+      std::vector<double> &impulse, LawEvaluation<dim> &evaluation,
+      SolverReport &report)
   {
     if (problem.free_motion == FreeVelocity::known) {
       settle(problem, control, energy_scale, impulse, evaluation, report);
-      return;
+      if (!gives_by_contact(problem, control, old, impulse, evaluation))
+        return;
     }
-    // only the solver itself knows the motion of the nodes
+    // only the solver itself knows the motion of the nodes, or other ways than
+    // that of Newton, which has led here
     const std::vector<double> before(impulse);
     const double error = evaluation.error;
     control.tolerance = std::max(1e-14, 1e-3 * control.tolerance);
-    control.maximum_iterations = 10;
+    if (problem.free_motion != FreeVelocity::known)
+      control.maximum_iterations = 10;
     report.add_work(solver.solve(problem, delassus_, energy_scale, control,
                                  impulse, evaluation));
     if (!(evaluation.error < error)) {
@@ -274,6 +279,70 @@ namespace nsfd
       evaluation.update(impulse);
       report.residual = error;
     }
+  }
+
+  /**
+   * Rows that depend on each other hold each other by impulses of any size that
+   * move nothing, and a hard problem may leave large ones. The residual is
+   * relative to the impulses: beside those the others are not solved at all,
+   * and times the last bits of velocities they are an energy. Impulses of rows
+   * far beyond what there is to move are found again from none, by conjugate
+   * gradients; where they fall, what is left over is solved once more, and the
+   * report says how far that has come.
+   */
+  template <int dim>
+  void StepProblem<dim>::renew_rows(NonsmoothSolver<dim> &solver,
+                                    const OneStepProblem<dim> &problem,
+                                    const SolverControl &control,
+                                    const double energy_scale,
+                                    std::vector<double> &impulse,
+                                    LawEvaluation<dim> &evaluation,
+                                    SolverReport &report)
+  {
+    constexpr double most = 1e3, last_bits = 1e-15;
+    const Communicator &all = delassus_.communicator();
+    const auto held = [&] {
+      return row_work(problem, all, evaluation.velocity, impulse).impulses;
+    };
+    const double present = held();
+    if (!std::isfinite(control.row_energy) || // statics
+        !(present > most * energy_scale))
+      return;
+    const std::vector<double> before(impulse);
+    const std::size_t n = impulse.size();
+    std::vector<double> D(n, -1.), wanted(n, 0.), found(n, 0.);
+    for (std::size_t k = 0; k < n; ++k)
+      if (problem.kind[k / dim] == PointKind::prescribed &&
+          problem.mask[k / dim] & (1u << k % dim)) {
+        D[k] = 0.;
+        impulse[k] = 0.;
+      }
+    evaluation.update(impulse);
+    for (std::size_t k = 0; k < n; ++k)
+      if (D[k] == 0.)
+        wanted[k] = problem.given_velocity[k] - evaluation.velocity[k];
+    RowSystem<dim> rows(delassus_, problem.n_owned);
+    rows.set(D);
+    rows.solve(wanted,
+               last_bits * std::sqrt(all.dot(wanted.data(), wanted.data(),
+                                             problem.n_owned * dim)),
+               found);
+    for (std::size_t k = 0; k < n; ++k)
+      if (D[k] == 0.)
+        impulse[k] = found[k];
+    evaluation.update(impulse);
+    if (!(held() < present / most)) { // they move something
+      impulse = before;
+      evaluation.update(impulse);
+      return;
+    }
+    report.residual = evaluation.error;
+    if (evaluation.error <= control.tolerance)
+      return;
+    const SolverReport again = solver.solve(problem, delassus_, energy_scale,
+                                            control, impulse, evaluation);
+    report.go_on_with(again);
+    report.converged = again.converged && !(held() > most * energy_scale);
   }
 
   /** By Newton's method, if it comes closer. */

@@ -79,7 +79,8 @@ namespace nsfd
                           const LawEvaluation<dim> &evaluation) const;
     void solve_closer(NonsmoothSolver<dim> &solver,
                       const OneStepProblem<dim> &problem, SolverControl control,
-                      double energy_scale, std::vector<double> &impulse,
+                      double energy_scale, const State &old,
+                      std::vector<double> &impulse,
                       LawEvaluation<dim> &evaluation, SolverReport &report);
     bool rests(double still, const OneStepProblem<dim> &problem,
                double energy_scale, const State &old,
@@ -90,6 +91,11 @@ namespace nsfd
     void hold_rows(const OneStepProblem<dim> &problem, SolverControl control,
                    double energy_scale, std::vector<double> &impulse,
                    LawEvaluation<dim> &evaluation, SolverReport &report);
+    void renew_rows(NonsmoothSolver<dim> &solver,
+                    const OneStepProblem<dim> &problem,
+                    const SolverControl &control, double energy_scale,
+                    std::vector<double> &impulse,
+                    LawEvaluation<dim> &evaluation, SolverReport &report);
     bool go_on(const OneStepProblem<dim> &problem, const SolverControl &control,
                double energy_scale, std::vector<double> &impulse,
                LawEvaluation<dim> &evaluation, SolverReport &report);

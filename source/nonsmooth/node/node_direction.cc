@@ -1,5 +1,6 @@
 #include "node_system.h"
 
+#include "linear_algebra/narrow_order.h"
 #include "linear_algebra/small_matrix.h"
 #include "point_slopes.h"
 
@@ -71,6 +72,48 @@ namespace nsfd
       for_ends(point.groups, point.ends, number);
       for_matrices(point.ends, number);
     }
+    order_unknowns();
+  }
+
+  /** Of clusters of nodes that contacts join, those of one place next to each
+      other: around one node everything is near. */
+  template <int dim>
+  void NodeSystem<dim>::order_unknowns()
+  {
+    constexpr int few = 64;
+    const bool joined =
+        std::any_of(points_.begin(), points_.begin() + long(n_),
+                    [](const Point &point) { return point.ends != nullptr; });
+    if (n_unknowns_ <= few || !joined)
+      return;
+    std::vector<std::vector<int>> neighbors(std::size_t(n_unknowns_ / dim));
+    std::vector<int> here;
+    for (std::size_t k = 0; k < n_; ++k) {
+      const Point &point = points_[k];
+      if (!point.carries)
+        continue;
+      here.clear();
+      const auto add = [&](const int g, const auto &) {
+        here.push_back(unknown_[g] / dim);
+      };
+      for_ends(point.groups, point.ends, add);
+      for_matrices(point.ends, add);
+      for (const int i : here)
+        for (const int j : here)
+          if (i != j)
+            neighbors[std::size_t(i)].push_back(j);
+    }
+    for (auto &list : neighbors) {
+      std::sort(list.begin(), list.end());
+      list.erase(std::unique(list.begin(), list.end()), list.end());
+    }
+    const std::vector<int> order = narrow_order(neighbors);
+    std::vector<int> place(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k)
+      place[std::size_t(order[k])] = int(k);
+    for (int &first : unknown_)
+      if (first >= 0)
+        first = place[std::size_t(first / dim)] * dim;
   }
 
   template <int dim>

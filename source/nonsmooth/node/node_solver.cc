@@ -14,8 +14,15 @@ namespace nsfd
     constexpr double least_softening = 1e-12;
     /// where a step goes too far, less is of no use
     constexpr double least_help = 1e-2;
-    constexpr unsigned int most_starts = 60;
     constexpr unsigned int most_flat_moves = 100;
+
+    /** Of a cluster each start takes the more time the larger it is, and what
+        helps one has done so after few: 12 of 118 points that shatter. */
+    unsigned int most_starts(const std::size_t n_points)
+    {
+      constexpr std::size_t most = 60, least = 8, of_a_node = 24;
+      return unsigned(std::clamp(most * of_a_node / n_points, least, most));
+    }
   } // namespace
 
   template <int dim>
@@ -146,7 +153,7 @@ namespace nsfd
         if (error_ <= control * system_.scale())
           return true;
       }
-      if (report_.starts == most_starts)
+      if (report_.starts >= most_starts(system_.n_points()))
         break;
       // S may jump where it is asked once more
       if (follow() && error_ <= control * system_.scale())
