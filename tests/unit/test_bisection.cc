@@ -371,7 +371,7 @@ end
         EXPECT_EQ(now.damage, before.damage);
       }
       EXPECT_GE(changes, 1u);
-      EXPECT_GT(count("joined_halves"), 4.);
+      EXPECT_GE(count("joined_halves"), 2.);
       EXPECT_GT(run.state.energy.damage, 0.);
     }
 
