@@ -78,7 +78,7 @@ end
           "Interface: all/toughness=0.2 J/m^2", "Adaptivity/levels=2",
           "Adaptivity/ahead=0.02", "Indicator: front/type=process zone",
           "Indicator: front/cells=4", "Indicator: front/reach=0",
-          "Indicator: front/traction=0.9", "Time/end=10 ns"}},
+          "Indicator: front/traction=0.9", "Time/end=6 ns"}},
         {"bisected_isotropic",
          {"dimension=2", "Mesh/type=isotropic", "Mesh/cells=200",
           "Adaptivity/levels=1", "Adaptivity/ahead=0.3",
