@@ -275,6 +275,18 @@ namespace nsfd
     cells_.resize(n);
   }
 
+  std::array<unsigned int, 2> Bisection::whole_edge(const unsigned int a,
+                                                    const unsigned int b) const
+  {
+    std::array<unsigned int, 2> edge = {{std::min(a, b), std::max(a, b)}};
+    for (;;) {
+      const auto &ends = ends_[edge[1]]; // of the later one
+      if (ends[0] == none || (ends[0] != edge[0] && ends[1] != edge[0]))
+        return edge;
+      edge = ends;
+    }
+  }
+
   CoarseMesh<2> Bisection::mesh() const
   {
     CoarseMesh<2> result;

@@ -80,6 +80,11 @@ namespace nsfd
       return ends_[vertex];
     }
 
+    /** The largest edge that one between two vertices is a part of: of the
+        first mesh, or one that bisections have put inside its cells. */
+    std::array<unsigned int, 2> whole_edge(unsigned int a,
+                                           unsigned int b) const;
+
     /** The present cells, with the ids of cells and faces of the first ones. */
     CoarseMesh<2> mesh() const;
 

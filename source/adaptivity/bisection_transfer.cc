@@ -1,5 +1,7 @@
 #include "bisection_transfer.h"
 
+#include "linear_triangle.h"
+
 #include "discretization/discretization.h"
 #include "state/point_fields.h"
 
@@ -226,9 +228,8 @@ namespace nsfd
     for (std::size_t i = 0; i < origins_.size(); ++i)
       if (origins_[i].own == Bisection::none &&
           discretization.origins()[i].kind != PointOrigin::Kind::interface)
-        throw std::runtime_error(
-            "a condition at the boundary holds on a part of an edge that is "
-            "halved alone: let it end at a node of the first mesh");
+        throw std::logic_error("a condition at the boundary holds on a part of "
+                               "an edge alone");
   }
 
   void BisectionTransfer::add_value(const std::vector<double> &old,
@@ -276,34 +277,21 @@ namespace nsfd
     return result;
   }
 
-  void BisectionTransfer::set_motion(const State &given, const State &taken)
+  void BisectionTransfer::set_motion(const Discretization<2> &discretization,
+                                     const State &given, const State &taken)
   {
     rates_.assign(cells_.cells().size(),
                   std::numeric_limits<double>::quiet_NaN());
     dilatations_.resize(rates_.size());
     for (std::size_t k = 0; k < rates_.size(); ++k) {
-      const auto &cell = cells_.cells()[k];
-      const std::array<dealii::Point<2>, 3> x = {
-          {cells_.vertex(cell.vertices[0]), cells_.vertex(cell.vertices[1]),
-           cells_.vertex(cell.vertices[2])}};
-      const auto a = x[1] - x[0], b = x[2] - x[0];
-      dilatations_[k] = (a[0] * b[1] - a[1] * b[0]) / 2. *
-                        dilatation(x, &taken.displacement[6 * k]);
+      const LinearTriangle shape(discretization.cells(), k);
+      dilatations_[k] =
+          shape.area * shape.dilatation(&taken.displacement[6 * k]);
       const double *const v = &taken.velocity[6 * k];
-      if (cell.other != Bisection::none ||
+      if (cells_.cells()[k].other != Bisection::none ||
           !std::equal(v, v + 6, given.velocity.begin() + 6 * long(k)))
-        rates_[k] = dilatation(x, v);
+        rates_[k] = shape.dilatation(v);
     }
-  }
-
-  double BisectionTransfer::dilatation(const std::array<dealii::Point<2>, 3> &x,
-                                       const double *u)
-  {
-    const auto a = x[1] - x[0], b = x[2] - x[0];
-    const double p[2] = {u[2] - u[0], u[3] - u[1]},
-                 q[2] = {u[4] - u[0], u[5] - u[1]};
-    return (p[0] * b[1] - q[0] * a[1] + q[1] * a[0] - p[1] * b[0]) /
-           (a[0] * b[1] - a[1] * b[0]);
   }
 
   /**

@@ -51,15 +51,14 @@ namespace nsfd
         are joined, corners of a node may have several velocities: their mean
         in the sense of the masses keeps the momentum. */
     State state(const State &old) const;
-    /** Where cells are joined: what the nodes have of the @p given state().
-        Rates of cells whose corners have other velocities are others. */
-    void set_motion(const State &given, const State &taken);
+    /** Where cells are joined, on the new mesh: what the nodes have of the
+        @p given state(). Rates of cells whose corners have other velocities are
+        others. */
+    void set_motion(const Discretization<2> &discretization, const State &given,
+                    const State &taken);
     /** psi eta of the front viscosity of the old cells, Pa s; after old_parts()
         was filled. */
     std::vector<double> front_viscosities() const;
-    /** tr eps of a cell with corners @p x, two displacements each. */
-    static double dilatation(const std::array<dealii::Point<2>, 3> &x,
-                             const double *u);
     /** What went into old_parts(), in the order of the new mesh. */
     Archive &new_parts();
 

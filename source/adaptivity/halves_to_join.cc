@@ -1,7 +1,5 @@
 #include "halves_to_join.h"
 
-#include "discretization/cells.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -13,33 +11,6 @@ namespace nsfd
     constexpr double small_part = 1e-3;
     /// cells around joined ones whose nodes may move
     constexpr unsigned int n_rings = 2;
-
-    /** Gradients of the linear functions of a triangle. */
-    std::array<std::array<double, 2>, 3>
-    gradients(const std::array<dealii::Point<2>, 3> &x, const double area)
-    {
-      std::array<std::array<double, 2>, 3> result;
-      for (unsigned int i = 0; i < 3; ++i) {
-        const auto side = x[(i + 2) % 3] - x[(i + 1) % 3];
-        result[i] = {{-side[1] / (2. * area), side[0] / (2. * area)}};
-      }
-      return result;
-    }
-
-    /** xx, yy, xy of the symmetric gradient. */
-    std::array<double, 3> strain(const std::array<dealii::Point<2>, 3> &x,
-                                 const double area,
-                                 const std::array<double, 6> &u)
-    {
-      const auto g = gradients(x, area);
-      std::array<double, 3> result{};
-      for (unsigned int i = 0; i < 3; ++i) {
-        result[0] += g[i][0] * u[2 * i];
-        result[1] += g[i][1] * u[2 * i + 1];
-        result[2] += (g[i][1] * u[2 * i] + g[i][0] * u[2 * i + 1]) / 2.;
-      }
-      return result;
-    }
 
     /** sigma(e) : e. */
     double power(const std::array<double, 3> &e, const double lambda,
@@ -53,37 +24,31 @@ namespace nsfd
 
   HalvesToJoin::Values HalvesToJoin::Element::forces(const Values &u) const
   {
-    const auto e = strain(x, area, u);
+    const auto e = shape.strain(u.data());
     const double trace = lambda * (e[0] + e[1]);
     const double xx = trace + 2. * mu * e[0], yy = trace + 2. * mu * e[1],
                  xy = 2. * mu * e[2];
-    const auto g = gradients(x, area);
     Values result;
     for (unsigned int i = 0; i < 3; ++i) {
-      result[2 * i] = area * (xx * g[i][0] + xy * g[i][1]);
-      result[2 * i + 1] = area * (xy * g[i][0] + yy * g[i][1]);
+      const auto &g = shape.gradients[i];
+      result[2 * i] = shape.area * (xx * g[0] + xy * g[1]);
+      result[2 * i + 1] = shape.area * (xy * g[0] + yy * g[1]);
     }
     return result;
   }
 
   double HalvesToJoin::Element::elastic(const Values &u) const
   {
-    return area / 2. * power(strain(x, area, u), lambda, mu);
+    return shape.area / 2. * power(shape.strain(u.data()), lambda, mu);
   }
 
   HalvesToJoin::HalvesToJoin(const Bisection &cells,
                              const Discretization<2> &discretization,
                              const JoinedMesh<2> &mesh, const State &state)
-      : cells_(cells), mesh_(mesh), state_(state), mass_(mesh.n_nodes(), 0.),
-        velocity_(2 * mesh.n_nodes()), vertex_(mesh.n_nodes()),
-        blocked_(mesh.n_nodes(), 0)
+      : cells_(cells), old_(discretization.cells()), mesh_(mesh), state_(state),
+        mass_(mesh.n_nodes(), 0.), velocity_(2 * mesh.n_nodes()),
+        vertex_(mesh.n_nodes()), blocked_(mesh.n_nodes(), 0)
   {
-    const auto &old = discretization.cells();
-    constants_.reserve(old.bodies.size());
-    for (std::size_t b = 0; b < old.bodies.size(); ++b) {
-      const auto &law = old.class_shape(b).elasticity[0];
-      constants_.push_back({law.lambda, law.mu});
-    }
     // corners of a node that is not blocked all say the same
     for (std::size_t i = 0; i < mesh.n_corners(); ++i) {
       const std::size_t n = mesh.node(i);
@@ -142,13 +107,13 @@ namespace nsfd
   }
 
   HalvesToJoin::Element HalvesToJoin::element(const Bisection::Cell &cell,
+                                              const LinearTriangle &shape,
                                               const Nodes &corners,
                                               const double corner_mass,
                                               const double viscosity) const
   {
-    Element result;
+    Element result{shape};
     for (unsigned int i = 0; i < 3; ++i) {
-      result.x[i] = cells_.vertex(cell.vertices[i]);
       result.nodes[i] = mesh_.node(corners[i]);
       for (unsigned int c = 0; c < 2; ++c) {
         const std::size_t k = 2 * std::size_t(corners[i]) + c;
@@ -157,10 +122,9 @@ namespace nsfd
             state_.displacement[k] - state_.last_step / 2. * state_.velocity[k];
       }
     }
-    const auto a = result.x[1] - result.x[0], b = result.x[2] - result.x[0];
-    result.area = (a[0] * b[1] - a[1] * b[0]) / 2.;
-    result.lambda = constants_[cell.old].lambda;
-    result.mu = constants_[cell.old].mu;
+    const auto &law = old_.class_shape(cell.old).elasticity[0];
+    result.lambda = law.lambda;
+    result.mu = law.mu;
     result.corner_mass = corner_mass;
     result.viscosity = viscosity;
     return result;
@@ -170,17 +134,23 @@ namespace nsfd
                                                   const double viscosity) const
   {
     const unsigned int first = 3 * cell.old;
-    return element(cell, {{first, first + 1, first + 2}}, mesh_.mass(first),
+    return element(cell, LinearTriangle(old_, cell.old),
+                   {{first, first + 1, first + 2}}, mesh_.mass(first),
                    viscosity);
   }
 
   HalvesToJoin::Element
   HalvesToJoin::joined_element(const Pair &pair, const double viscosity) const
   {
-    const unsigned int first = 3 * cells_.cells()[pair[0]].old;
+    const auto cell = cells_.joined(pair[0], pair[1]);
+    std::vector<dealii::Point<2>> x;
+    for (const unsigned int v : cell.vertices)
+      x.push_back(cells_.vertex(v));
+    const unsigned int first = 3 * cell.old;
     const Pair to = ends(pair);
-    return element(cells_.joined(pair[0], pair[1]), {{first + 1, to[0], to[1]}},
-                   2. * mesh_.mass(first), viscosity);
+    return element(cell, LinearTriangle(old_, cell.old, x),
+                   {{first + 1, to[0], to[1]}}, 2. * mesh_.mass(first),
+                   viscosity);
   }
 
   /** By itself: against its energy, or a @p mean one, J/m^2. */
@@ -191,7 +161,7 @@ namespace nsfd
       if (pair[0] == Bisection::none)
         continue;
       const Element joined = joined_element(pair, 0.);
-      whole += joined.area;
+      whole += joined.shape.area;
       strained += joined.elastic(joined.displacement);
       const Pair to = ends(pair);
       for (unsigned int k = 0; k < 2; ++k) {
@@ -307,13 +277,12 @@ namespace nsfd
     clear(r);
     for (const auto *list : {&joined, &others})
       for (const Element &one : *list) {
-        const auto g = gradients(one.x, one.area);
         for (unsigned int i = 0; i < 3; ++i) {
-          const double square = g[i][0] * g[i][0] + g[i][1] * g[i][1];
+          const auto &g = one.shape.gradients[i];
           for (unsigned int c = 0; c < 2; ++c)
             diagonal[2 * one.nodes[i] + c] +=
-                one.area *
-                (one.mu * square + (one.lambda + one.mu) * g[i][c] * g[i][c]);
+                one.shape.area *
+                (one.mu * g * g + (one.lambda + one.mu) * g[c] * g[c]);
         }
       }
     const auto dot = [n](const std::vector<double> &a,
@@ -356,13 +325,13 @@ namespace nsfd
                          const Values &velocity, const Values &displacement,
                          Plan &plan) const
   {
-    const auto rate = strain(element.x, element.area, velocity);
+    const auto rate = element.shape.strain(velocity.data());
     double square = 0.;
     for (const double v : velocity)
       square += v * v;
     const double D = rate[0] + rate[1], h = state_.last_step;
     plan.inertia += sign * element.corner_mass / 2. * square;
-    plan.motion -= sign * element.area *
+    plan.motion -= sign * element.shape.area *
                    (h * h / 8. * power(rate, element.lambda, element.mu) +
                     h / 4. * element.viscosity * D * D);
     plan.elastic += sign * element.elastic(displacement);
@@ -444,7 +413,7 @@ namespace nsfd
         energy += one.elastic(one.displacement);
         for (const double v : one.velocity)
           energy += one.corner_mass * v * v / 2.;
-        area += one.area;
+        area += one.shape.area;
       }
     const double mean = area > 0. ? energy / area : 0.;
     wanted.erase(std::remove_if(wanted.begin(), wanted.end(),

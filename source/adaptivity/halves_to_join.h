@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bisection.h"
+#include "linear_triangle.h"
 
 #include "joined/joined_mesh.h"
 #include "state/state.h"
@@ -53,14 +54,14 @@ namespace nsfd
     using Family = Bisection::Family;
     using Pair = std::array<unsigned int, 2>;
     using Nodes = std::array<unsigned int, 3>;
-    using Values = std::array<double, 6>; ///< two at each corner
+    using Values = LinearTriangle::Values;
 
     /** A triangle, old or joined, between corners of the old mesh. */
     struct Element {
-      std::array<dealii::Point<2>, 3> x;
-      Nodes nodes;
-      Values displacement, velocity; ///< before; in the middle of the step
-      double area = 0., lambda = 0., mu = 0.;
+      LinearTriangle shape;
+      Nodes nodes{};
+      Values displacement{}, velocity{}; ///< before; in the middle of the step
+      double lambda = 0., mu = 0.;
       double corner_mass = 0., viscosity = 0.;
 
       /** Forces at the corners, N/m. */
@@ -79,8 +80,9 @@ namespace nsfd
     bool is_smooth(const Family &family, double mean) const;
     Pair ends(const Pair &pair) const;
     bool stays(const Bisection::Cell &cell) const;
-    Element element(const Bisection::Cell &cell, const Nodes &corners,
-                    double corner_mass, double viscosity) const;
+    Element element(const Bisection::Cell &cell, const LinearTriangle &shape,
+                    const Nodes &corners, double corner_mass,
+                    double viscosity) const;
     Element old_element(const Bisection::Cell &cell, double viscosity) const;
     Element joined_element(const Pair &pair, double viscosity) const;
     Values at(const Nodes &nodes, const std::vector<double> &of_nodes) const;
@@ -96,12 +98,9 @@ namespace nsfd
                     Plan &plan) const;
 
     const Bisection &cells_;
+    const Cells<2> &old_;
     const JoinedMesh<2> &mesh_;
     const State &state_;
-    struct Constants {
-      double lambda, mu;
-    };
-    std::vector<Constants> constants_; ///< of the old cells, Pa
     /// by node: kg/m; two components of the velocity, where it is not blocked
     std::vector<double> mass_, velocity_;
     std::vector<unsigned int> vertex_;  ///< of Bisection

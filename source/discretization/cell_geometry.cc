@@ -69,13 +69,22 @@ namespace nsfd
   FaceGeometry<dim>::FaceGeometry(const ReferenceCell &cell,
                                   const std::vector<Point<dim>> &cell_corners,
                                   const unsigned int face_no)
-      : face_(cell.face_reference_cell(face_no)),
-        corners_(face_corners(cell, cell_corners, face_no)),
-        inside_(mean(cell_corners))
+      : face_(cell.face_reference_cell(face_no)), inside_(mean(cell_corners))
   {
-    for (unsigned int v = 0; v < face_.n_vertices(); ++v)
-      reference_.push_back(
-          cell.template vertex<dim>(cell.face_to_cell_vertices(face_no, v, 1)));
+    for (unsigned int v = 0; v < face_.n_vertices(); ++v) {
+      const unsigned int corner = cell.face_to_cell_vertices(face_no, v, 1);
+      corners_.push_back(cell_corners[corner]);
+      reference_.push_back(cell.template vertex<dim>(corner));
+    }
+  }
+
+  template <int dim>
+  Point<dim> FaceGeometry<dim>::centre() const
+  {
+    Point<dim> result;
+    for (const auto &corner : corners_)
+      result += corner / double(corners_.size());
+    return result;
   }
 
   template <int dim>
@@ -85,7 +94,7 @@ namespace nsfd
   }
 
   template <int dim>
-  Point<dim> FaceGeometry<dim>::at(const std::vector<Point<dim>> &of,
+  Point<dim> FaceGeometry<dim>::at(const Corners &of,
                                    const Point<dim - 1> &xi) const
   {
     Point<dim> x;

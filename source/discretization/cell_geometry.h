@@ -4,6 +4,8 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/grid/reference_cell.h>
 
+#include <boost/container/small_vector.hpp>
+
 #include <array>
 #include <vector>
 
@@ -52,8 +54,12 @@ namespace nsfd
                  const std::vector<dealii::Point<dim>> &cell_corners,
                  unsigned int face_no);
 
+    using Corners = boost::container::small_vector<dealii::Point<dim>, 4>;
+
     bool is_triangle() const;
-    const std::vector<dealii::Point<dim>> &corners() const { return corners_; }
+    const Corners &corners() const { return corners_; }
+    /** Mean of its corners. */
+    dealii::Point<dim> centre() const;
 
     dealii::Point<dim> position(const dealii::Point<dim - 1> &xi) const
     {
@@ -70,13 +76,12 @@ namespace nsfd
     double measure() const;
 
   private:
-    dealii::Point<dim> at(const std::vector<dealii::Point<dim>> &of,
+    dealii::Point<dim> at(const Corners &of,
                           const dealii::Point<dim - 1> &xi) const;
 
     dealii::ReferenceCell face_;
-    std::vector<dealii::Point<dim>> corners_;
-    std::vector<dealii::Point<dim>> reference_; ///< in the reference cell
-    dealii::Point<dim> inside_;                 ///< centre of the cell
+    Corners corners_, reference_; ///< in space, in the reference cell
+    dealii::Point<dim> inside_;   ///< centre of the cell
   };
 
   /** Rows n, t1, t2 of a right-handed local frame. */

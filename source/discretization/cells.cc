@@ -168,12 +168,28 @@ namespace nsfd
     bodies.class_of.reserve(cells.size());
     for (auto *first : {&first_node, &bodies.first_dof, &bodies.first_slot})
       first->reserve(cells.size() + 1);
+    const auto add = [&](const auto &cell, const unsigned int k) {
+      BodyClass &body = bodies.classes[k];
+      body.bodies.push_back(unsigned(bodies.class_of.size()));
+      bodies.class_of.push_back(k);
+      bodies.first_dof.push_back(bodies.first_dof.back() + body.n_dofs);
+      bodies.first_slot.push_back(bodies.first_slot.back() + body.n_slots);
+      first_node.push_back(first_node.back() + shapes[k].n_nodes);
+      global_cell.push_back(cell->global_active_cell_index());
+      cell_id.push_back(cell->id().template to_binary<dim>());
+    };
+    // of cells without blocks all of a material are of one class
+    std::vector<int> class_of_material(input.materials.size(), -1);
     for (const auto &cell : cells) {
       const unsigned int material = materials[cell->active_cell_index()];
       auto &own_corners = corners.emplace_back();
       own_corners.reserve(cell->n_vertices());
       for (const unsigned int v : cell->vertex_indices())
         own_corners.push_back(cell->vertex(v));
+      if (builder.has_no_blocks() && class_of_material[material] >= 0) {
+        add(cell, unsigned(class_of_material[material]));
+        continue;
+      }
       const RoundedCorners<dim> rounded(own_corners);
       const unsigned int divided = divided_faces(cell);
       const Form form =
@@ -197,15 +213,8 @@ namespace nsfd
                       material, divided,
                       moduli.empty() ? constants[material] : moduli,
                       shapes.emplace_back(), bodies.classes.emplace_back());
-
-      BodyClass &body = bodies.classes[k];
-      body.bodies.push_back(unsigned(bodies.class_of.size()));
-      bodies.class_of.push_back(k);
-      bodies.first_dof.push_back(bodies.first_dof.back() + body.n_dofs);
-      bodies.first_slot.push_back(bodies.first_slot.back() + body.n_slots);
-      first_node.push_back(first_node.back() + shapes[k].n_nodes);
-      global_cell.push_back(cell->global_active_cell_index());
-      cell_id.push_back(cell->id().template to_binary<dim>());
+      class_of_material[material] = int(k);
+      add(cell, k);
     }
     spare_shapes_.resize(shapes.size());
   }

@@ -98,6 +98,8 @@ namespace nsfd
       const SpringShares<dim> shares_;
       std::array<Quadrature<dim - 1>, 2> quadratures_; ///< second: of triangles
       std::string text_;                               ///< of a face
+      std::vector<Point<dim>> corners_;                ///< of its cell
+      std::vector<double> frames_;                     ///< of its points
       std::vector<int> body_of_; ///< by active cell index, -1 if not ours
 
       bool is_ours(const Cell &cell) const
@@ -136,10 +138,10 @@ namespace nsfd
                                                const PointOrigin origin,
                                                const Frame *const frame)
     {
-      std::vector<Point<dim>> corners;
+      corners_.clear();
       for (const unsigned int v : cell->vertex_indices())
-        corners.push_back(cell->vertex(v));
-      const FaceGeometry<dim> geometry(cell->reference_cell(), corners, f);
+        corners_.push_back(cell->vertex(v));
+      const FaceGeometry<dim> geometry(cell->reference_cell(), corners_, f);
       auto &quadrature = quadratures_[geometry.is_triangle()];
       if (quadrature.size() == 0)
         quadrature = interface_quadrature<dim>(input_.discretization,
@@ -153,13 +155,13 @@ namespace nsfd
                std::to_string(int(origin.kind)) + '/' +
                std::to_string(inside ? 0 : origin.block);
       result.face.key = hash(text_);
-      const Point<dim> centre = mean(geometry.corners());
+      const Point<dim> centre = geometry.centre();
       for (unsigned int c = 0; c < dim; ++c)
         result.face.centre[c] = centre[c];
       result.face.first = unsigned(points.n_points);
       result.face.count = quadrature.size();
       points.n_points += quadrature.size();
-      std::vector<double> frames;
+      frames_.clear();
       for (unsigned int q = 0; q < quadrature.size(); ++q) {
         const auto xi = quadrature.point(q);
         Tensor<1, dim> n = geometry.normal(xi);
@@ -171,10 +173,10 @@ namespace nsfd
           points.position.push_back(position[c]);
         for (const auto &axis : axes)
           for (unsigned int c = 0; c < dim; ++c)
-            frames.push_back(axis[c]);
+            frames_.push_back(axis[c]);
         points.weight.push_back(measure * quadrature.weight(q));
       }
-      add_frames(frames);
+      add_frames(frames_);
       return result;
     }
 
@@ -314,6 +316,7 @@ namespace nsfd
       Point<dim> centre;
       for (const unsigned int v : at->vertex_indices())
         centre += at->vertex(v) / double(at->n_vertices());
+      centre = groups_.asked_at(at->index(), centre);
       const unsigned int block =
           block_of(cell_1, cell_2, centre, at->manifold_id());
       auto face = make_face(cell_1, face_no_1,

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 // Which place on the surface of a cell a point of a face has.
 
@@ -90,14 +93,28 @@ namespace nsfd
       return bodies.first_slot[b] + best;
     };
 
+    // body by body: each has its shape made once
+    std::vector<std::size_t> first(cells.corners.size() + 1, 0);
     for (const auto &face : points.faces)
-      for (unsigned int side = 0; side < 2; ++side) {
-        if (face.bodies[side] < 0)
-          continue;
-        const auto of_body = cells.shape(std::size_t(face.bodies[side]));
+      for (const int b : face.bodies)
+        if (b >= 0)
+          ++first[std::size_t(b) + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<std::pair<unsigned int, unsigned int>> sides(first.back());
+    auto next = first;
+    for (unsigned int f = 0; f < points.faces.size(); ++f)
+      for (unsigned int side = 0; side < 2; ++side)
+        if (const int b = points.faces[f].bodies[side]; b >= 0)
+          sides[next[std::size_t(b)]++] = {f, side};
+    for (std::size_t b = 0; b + 1 < first.size(); ++b) {
+      if (first[b] == first[b + 1])
+        continue;
+      const auto shape = cells.shape(b);
+      for (std::size_t k = first[b]; k < first[b + 1]; ++k) {
+        const auto &[f, side] = sides[k];
+        const auto &face = points.faces[f];
         for (unsigned int i = face.first; i < face.first + face.count; ++i) {
-          const std::size_t slot =
-              slot_of(std::size_t(face.bodies[side]), *of_body, i);
+          const std::size_t slot = slot_of(b, *shape, i);
           if (bodies.slot_point[slot] < n) {
             bodies.extra_points.emplace_back(slot, i);
             AssertThrow(side == 1 && face.boundary,
@@ -108,6 +125,7 @@ namespace nsfd
           }
         }
       }
+    }
     std::sort(bodies.extra_points.begin(), bodies.extra_points.end());
   }
 

@@ -72,6 +72,19 @@ namespace nsfd
         dealii::types::manifold_id face_id =
             dealii::numbers::flat_manifold_id) const;
 
+    /** By the index of a face, where faces may be parts of those of the first
+        mesh: the middle of the whole one, where it is asked what holds. */
+    void set_middles(std::vector<dealii::Point<dim>> middles)
+    {
+      middles_ = std::move(middles);
+    }
+    /** @p own, or that. */
+    dealii::Point<dim> asked_at(const int face,
+                                const dealii::Point<dim> &own) const
+    {
+      return middles_.empty() ? own : middles_[std::size_t(face)];
+    }
+
     /** Empty, or a sentence: this mesh has no such group or side. */
     std::string missing(const Where &where) const;
 
@@ -88,6 +101,7 @@ namespace nsfd
                    const std::array<dealii::types::material_id, 2> &ids) const;
 
     std::pair<dealii::Point<dim>, dealii::Point<dim>> box_;
+    std::vector<dealii::Point<dim>> middles_;
     std::vector<std::string> bodies_;
     std::vector<std::string> material_ids_, boundary_ids_;
 

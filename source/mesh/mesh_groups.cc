@@ -177,7 +177,7 @@ namespace nsfd
     case Where::Kind::all:
       return true;
     case Where::Kind::side:
-      return holds_side(where.name, face->center());
+      return holds_side(where.name, asked_at(face->index(), face->center()));
     case Where::Kind::group:
       if (has_named_) {
         const auto group = named_.find(where.name);
@@ -193,7 +193,7 @@ namespace nsfd
     case Where::Kind::between_groups:
       return false;
     case Where::Kind::expression:
-      return where.condition.at(face->center()) != 0.;
+      return where.condition.at(asked_at(face->index(), face->center())) != 0.;
     }
     return false;
   }

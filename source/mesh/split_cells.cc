@@ -181,17 +181,21 @@ namespace nsfd
 
   namespace
   {
-    /** An edge that is cut, and the centroids on its two sides. */
-    struct CutEdge {
-      std::array<unsigned int, 2> ends;
+    /** An edge, or in space a face, that is cut, and the centroids on its two
+        sides. */
+    template <int dim>
+    struct Cut {
+      std::array<unsigned int, dim> corners;
       std::array<unsigned int, 2> centres = {{no_vertex, no_vertex}};
     };
+    template <int dim>
+    using Cuts = std::map<unsigned int, Cut<dim>>; // by middle
 
     /** Of the line between the centroids with the edge. */
-    Point<2> crossing(const CutEdge &edge,
-                      const std::vector<Point<2>> &vertices)
+    Point<2> crossing(const Cut<2> &edge, const std::vector<Point<2>> &vertices)
     {
-      const Point<2> &a = vertices[edge.ends[0]], &b = vertices[edge.ends[1]],
+      const Point<2> &a = vertices[edge.corners[0]],
+                     &b = vertices[edge.corners[1]],
                      &g = vertices[edge.centres[0]];
       const Tensor<1, 2> along = b - a, across = vertices[edge.centres[1]] - g,
                          to = g - a;
@@ -200,51 +204,9 @@ namespace nsfd
       // no third of an edge is cut off: cells would be low
       return a + std::clamp(t, 1. / 3., 2. / 3.) * along;
     }
-  } // namespace
-
-  CoarseMesh<2> split_at_centroids(const CoarseMesh<2> &mesh,
-                                   const bool is_straight)
-  {
-    CoarseMesh<2> result;
-    result.vertices = mesh.vertices;
-    Middles<2> middles(result.vertices);
-    std::map<unsigned int, CutEdge> edges; // by middle
-    for (const auto &cell : mesh.cells) {
-      const unsigned int centre = middles.of_cell(cell.vertices);
-      for (unsigned int v = 0; v < 3; ++v) {
-        const unsigned int a = cell.vertices[v], b = cell.vertices[(v + 1) % 3];
-        const unsigned int middle = middles.of({a, b});
-        if (is_straight) {
-          const auto [entry, is_new] = edges.emplace(middle, CutEdge{{{a, b}}});
-          entry->second.centres[is_new ? 0 : 1] = centre;
-        }
-        CellData<2> part = cell;
-        for (const auto &corners :
-             {std::array{a, middle, centre}, std::array{middle, b, centre}}) {
-          part.vertices.assign(corners.begin(), corners.end());
-          result.cells.push_back(part);
-        }
-      }
-    }
-    for (const auto &[middle, edge] : edges)
-      if (edge.centres[1] != no_vertex)
-        result.vertices[middle] = crossing(edge, result.vertices);
-    split_faces(mesh.boundary.boundary_lines, middles,
-                result.boundary.boundary_lines);
-    return result;
-  }
-
-  namespace
-  {
-    /** A face that is cut, and the centroids on its two sides. */
-    struct CutFace {
-      std::array<unsigned int, 3> corners;
-      std::array<unsigned int, 2> centres = {{no_vertex, no_vertex}};
-    };
 
     /** Of the line between the centroids with the face. */
-    Point<3> crossing(const CutFace &face,
-                      const std::vector<Point<3>> &vertices)
+    Point<3> crossing(const Cut<3> &face, const std::vector<Point<3>> &vertices)
     {
       const Point<3> &a = vertices[face.corners[0]],
                      &b = vertices[face.corners[1]],
@@ -267,6 +229,25 @@ namespace nsfd
       return middle + way * (p - middle);
     }
 
+    /** Middles go to where these lines cross them, but for those at the
+        boundary. */
+    template <int dim>
+    void straighten(const Cuts<dim> &cuts, std::vector<Point<dim>> &vertices)
+    {
+      for (const auto &[middle, cut] : cuts)
+        if (cut.centres[1] != no_vertex)
+          vertices[middle] = crossing(cut, vertices);
+    }
+
+    template <int dim>
+    void add_cut(const unsigned int middle,
+                 const std::array<unsigned int, dim> &corners,
+                 const unsigned int centre, Cuts<dim> &cuts)
+    {
+      const auto [entry, is_new] = cuts.emplace(middle, Cut<dim>{corners});
+      entry->second.centres[is_new ? 0 : 1] = centre;
+    }
+
     /** The corners of a tetrahedron of positive volume. */
     std::vector<unsigned int> positive(std::vector<unsigned int> corners,
                                        const std::vector<Point<3>> &vertices)
@@ -278,7 +259,48 @@ namespace nsfd
         std::swap(corners[2], corners[3]);
       return corners;
     }
+
+    /** @p visit(end, middle of its edge) of the six parts of a triangle. */
+    template <typename Visit>
+    void for_sixths(const std::array<unsigned int, 3> &corners,
+                    Middles<3> &middles, const Visit &visit)
+    {
+      for (unsigned int v = 0; v < 3; ++v) {
+        const unsigned int from = corners[v], to = corners[(v + 1) % 3],
+                           half = middles.of({from, to});
+        for (const unsigned int end : {from, to})
+          visit(end, half);
+      }
+    }
   } // namespace
+
+  CoarseMesh<2> split_at_centroids(const CoarseMesh<2> &mesh,
+                                   const bool is_straight)
+  {
+    CoarseMesh<2> result;
+    result.vertices = mesh.vertices;
+    Middles<2> middles(result.vertices);
+    Cuts<2> edges;
+    for (const auto &cell : mesh.cells) {
+      const unsigned int centre = middles.of_cell(cell.vertices);
+      for (unsigned int v = 0; v < 3; ++v) {
+        const unsigned int a = cell.vertices[v], b = cell.vertices[(v + 1) % 3];
+        const unsigned int middle = middles.of({a, b});
+        if (is_straight)
+          add_cut<2>(middle, {{a, b}}, centre, edges);
+        CellData<2> part = cell;
+        for (const auto &corners :
+             {std::array{a, middle, centre}, std::array{middle, b, centre}}) {
+          part.vertices.assign(corners.begin(), corners.end());
+          result.cells.push_back(part);
+        }
+      }
+    }
+    straighten(edges, result.vertices);
+    split_faces(mesh.boundary.boundary_lines, middles,
+                result.boundary.boundary_lines);
+    return result;
+  }
 
   CoarseMesh<3> split_at_centroids(const CoarseMesh<3> &mesh,
                                    const bool is_straight)
@@ -286,46 +308,35 @@ namespace nsfd
     CoarseMesh<3> result;
     result.vertices = mesh.vertices;
     Middles<3> middles(result.vertices);
-    std::map<unsigned int, CutFace> faces; // by middle
+    Cuts<3> faces;
     for (const auto &cell : mesh.cells) {
       const unsigned int centre = middles.of_cell(cell.vertices);
       for (const auto &local : cell_faces<3>(4)) {
-        const unsigned int a = cell.vertices[local[0]],
-                           b = cell.vertices[local[1]],
-                           c = cell.vertices[local[2]];
-        const unsigned int middle = middles.of({a, b, c});
-        if (is_straight) {
-          const auto [entry, is_new] =
-              faces.emplace(middle, CutFace{{{a, b, c}}});
-          entry->second.centres[is_new ? 0 : 1] = centre;
-        }
+        const std::array<unsigned int, 3> corners = {{cell.vertices[local[0]],
+                                                      cell.vertices[local[1]],
+                                                      cell.vertices[local[2]]}};
+        const unsigned int middle =
+            middles.of({corners[0], corners[1], corners[2]});
+        if (is_straight)
+          add_cut<3>(middle, corners, centre, faces);
         CellData<3> part = cell;
-        for (const auto &[from, to] :
-             {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
-          const unsigned int half = middles.of({from, to});
-          for (const unsigned int end : {from, to}) {
-            part.vertices =
-                positive({end, half, middle, centre}, result.vertices);
-            result.cells.push_back(part);
-          }
-        }
+        for_sixths(corners, middles,
+                   [&](const unsigned int end, const unsigned int half) {
+                     part.vertices =
+                         positive({end, half, middle, centre}, result.vertices);
+                     result.cells.push_back(part);
+                   });
       }
     }
-    for (const auto &[middle, face] : faces)
-      if (face.centres[1] != no_vertex)
-        result.vertices[middle] = crossing(face, result.vertices);
+    straighten(faces, result.vertices);
     for (const auto &face : mesh.boundary.boundary_quads) {
       const unsigned int middle = middles.of(face.vertices);
-      for (unsigned int v = 0; v < 3; ++v) {
-        const unsigned int from = face.vertices[v],
-                           to = face.vertices[(v + 1) % 3],
-                           half = middles.of({from, to});
-        for (const unsigned int end : {from, to}) {
-          CellData<2> part = face;
-          part.vertices = {end, half, middle};
-          result.boundary.boundary_quads.push_back(part);
-        }
-      }
+      CellData<2> part = face;
+      for_sixths({{face.vertices[0], face.vertices[1], face.vertices[2]}},
+                 middles, [&](const unsigned int end, const unsigned int half) {
+                   part.vertices = {end, half, middle};
+                   result.boundary.boundary_quads.push_back(part);
+                 });
     }
     return result;
   }

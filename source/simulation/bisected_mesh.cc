@@ -2,11 +2,9 @@
 
 #include "adaptivity/bisection_transfer.h"
 #include "adaptivity/halves_to_join.h"
-#include "adaptivity/mesh_view.h"
 #include "discretization/body_frequency.h"
 #include "discretization/cells.h"
 #include "mesh/level_mesh.h"
-#include "nonsmooth/point_law.h"
 
 #include "nsfd/core/archive.h"
 
@@ -71,29 +69,28 @@ namespace nsfd
         }
       return result;
     }
-
-    /** Of a point that has been released: what it carried in the last step over
-        the strength that it had. What is left of broken places that rest is
-        little. */
-    double share_of_strength(const LeapfrogChains<2> &chains,
-                             const std::size_t a)
-    {
-      const auto &problem = chains.problem;
-      const auto *law = problem.interactions[problem.interaction[a]].law.get();
-      if (!law || (chains.beta[a] <= 0. && chains.other.beta[a] <= 0.))
-        return 0.;
-      const double pull = std::max(0., -chains.impulse[2 * a]),
-                   slide = chains.impulse[2 * a + 1];
-      return std::hypot(pull, slide) /
-             (problem.weight[a] * problem.time_step * law->strength() *
-              problem.strength_factor[a]);
-    }
   } // namespace
+
+  std::vector<Point<2>> middles_of(const Bisection &cells,
+                                   const Triangulation<2> &triangulation)
+  {
+    std::vector<Point<2>> result(triangulation.n_raw_faces());
+    for (const auto &cell : triangulation.active_cell_iterators()) {
+      const auto &v = cells.cells()[cell->id().get_coarse_cell_id()].vertices;
+      for (unsigned int f = 0; f < 3; ++f) {
+        const auto [a, b] = cells.whole_edge(v[f], v[(f + 1) % 3]);
+        result[std::size_t(cell->face(f)->index())] =
+            cells.vertex(a) + (cells.vertex(b) - cells.vertex(a)) / 2.;
+      }
+    }
+    return result;
+  }
 
   BisectedMesh::BisectedMesh(const SceneInput &input,
                              const Communicator &communicator, Model<2> &model)
       : input_(input), communicator_(communicator), model_(model),
-        materials_(materials_of(input, model)), cells_(cells_of(model))
+        materials_(materials_of(input, model)), cells_(cells_of(model)),
+        fronts_(input, model)
   {
   }
 
@@ -129,60 +126,13 @@ namespace nsfd
   void BisectedMesh::build()
   {
     fill_with(cells_, *model_.triangulation);
+    model_.groups->set_middles(middles_of(cells_, *model_.triangulation));
     model_.rebuild_joined(input_, communicator_, of_cells(materials_, cells_));
-    asked_.assign(model_.discretization->points().n_points, 0);
+    fronts_.mesh_changed();
     largest_cells_ =
         std::max<unsigned long long>(largest_cells_, cells_.cells().size());
   }
 
-  /** @p look(point, share of its strength): points that carry half of it. */
-  template <typename Look>
-  void BisectedMesh::for_fronts(const Look &look) const
-  {
-    const auto &problem = model_.points();
-    const auto with_law = [&](const unsigned int i, const double share) {
-      if (problem.interactions[problem.interaction[i]].law)
-        look(i, share);
-    };
-    const auto parts = model_.leapfrog->parts();
-    parts.faces.visit_near(with_law);
-    const auto &chains = parts.points.chains();
-    for (std::size_t a = 0; a < chains.size(); ++a) {
-      const double share = share_of_strength(chains, a);
-      if (share >= 0.5)
-        with_law(chains.point[a], std::min(1., share));
-    }
-  }
-
-  MeshView::Point BisectedMesh::front(const unsigned int point,
-                                      const double share) const
-  {
-    const auto &discretization = *model_.discretization;
-    MeshView::Point result;
-    for (unsigned int c = 0; c < 2; ++c)
-      result.position[c] = discretization.points().position[2 * point + c];
-    result.utilisation = share;
-    result.zone =
-        cohesive_zone<2>(input_, discretization, model_.points(), point);
-    return result;
-  }
-
-  /** Those that are nearer to their strength than they were when indicators
-      were asked. */
-  std::vector<MeshView::Point> BisectedMesh::new_fronts()
-  {
-    std::vector<MeshView::Point> result;
-    for_fronts([&](const unsigned int i, const double share) {
-      const auto level = std::uint8_t(std::min(100., 100. * share));
-      if (level <= asked_[i])
-        return;
-      asked_[i] = level;
-      result.push_back(front(i, share));
-    });
-    return result;
-  }
-
-  /** False: all cells are small enough. */
   bool BisectedMesh::refine(std::vector<MeshView::Point> points)
   {
     constexpr double round_off = 1. + 1e-6; // sizes were halved and compared
@@ -214,13 +164,23 @@ namespace nsfd
     }
   }
 
-  bool BisectedMesh::accept(State &state)
+  void BisectedMesh::count_step()
   {
     ++steps_;
     cells_sum_ += double(cells_.cells().size());
-    if (state.step % between_looks != 0)
+  }
+
+  bool BisectedMesh::is_due(const State &state) const
+  {
+    return state.step % between_looks == 0;
+  }
+
+  bool BisectedMesh::accept(State &state)
+  {
+    count_step();
+    if (!is_due(state))
       return false;
-    const auto fronts = new_fronts();
+    const auto fronts = fronts_.new_ones(state.last_step);
     if (fronts.empty() || !refine(fronts))
       return false;
     change(state);
@@ -229,12 +189,9 @@ namespace nsfd
 
   /** Halves that are smaller than indicators ask for, and further from the
       present fronts than these would be refined. */
-  std::vector<Bisection::Family> BisectedMesh::not_wanted() const
+  std::vector<Bisection::Family> BisectedMesh::not_wanted(const double h) const
   {
-    std::vector<MeshView::Point> points;
-    for_fronts([&](const unsigned int i, const double share) {
-      points.push_back(front(i, share));
-    });
+    const auto points = fronts_.all(h);
     LeafView view(cells_, Bisection::none);
     view.set_points(and_ahead(input_.adaptivity->ahead, points));
     std::vector<double> size(view.bodies().size(),
@@ -267,9 +224,10 @@ namespace nsfd
     model_.leapfrog->serialize(transfer.old_parts());
     HalvesToJoin::Plan plan;
     if (input_.adaptivity->coarsen_every > 0 && state.last_step > 0.)
-      plan = HalvesToJoin(cells_, *model_.discretization,
-                          model_.leapfrog->parts().mesh, state)
-                 .plan(not_wanted(), transfer.front_viscosities());
+      plan =
+          HalvesToJoin(cells_, *model_.discretization,
+                       model_.leapfrog->parts().mesh, state)
+              .plan(not_wanted(state.last_step), transfer.front_viscosities());
     if (!plan.families.empty())
       view_.reset(); // it numbers the cells
     cells_.join(plan.families);
@@ -288,7 +246,7 @@ namespace nsfd
     model_.leapfrog->resume_from(state);
     if (!plan.families.empty()) {
       model_.leapfrog->show(state);
-      transfer.set_motion(given, state);
+      transfer.set_motion(*model_.discretization, given, state);
     }
     model_.leapfrog->serialize(transfer.new_parts());
     model_.leapfrog->show(state);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "breaking_fronts.h"
 #include "mesh_changes.h"
 
 #include "adaptivity/bisection.h"
@@ -12,7 +13,7 @@ namespace nsfd
    * Triangles of explicit steps: what has taken a step is looked at, and the
    * steps that come find smaller cells where a front goes. All steps of a run
    * have one length, that of the smallest cells there may be: shorter ones
-   * would create energy, see Leapfrog. One rank.
+   * would create energy, see Leapfrog. All cells are on this rank.
    */
   class BisectedMesh final : public MeshChanges<2>
   {
@@ -27,15 +28,24 @@ namespace nsfd
     bool accept(State &state) override;
     void fill_counters(std::map<std::string, double> &counters) const override;
 
-  private:
-    std::vector<MeshView::Point> new_fronts();
-    template <typename Look>
-    void for_fronts(const Look &look) const;
-    MeshView::Point front(unsigned int point, double share) const;
+    const Bisection &cells() const { return cells_; }
+    /** Of a cell. */
+    unsigned int material(const std::size_t cell) const
+    {
+      return materials_[cells_.cells()[cell].first];
+    }
+
+    // accept() by its parts
+    void count_step();
+    bool is_due(const State &state) const;
+    /** Cells for the points. False: all are small enough. */
     bool refine(std::vector<MeshView::Point> points);
-    void build();
-    std::vector<Bisection::Family> not_wanted() const;
+    /** After refine(): the parts of the model, and the state. */
     void change(State &state);
+
+  private:
+    void build();
+    std::vector<Bisection::Family> not_wanted(double h) const;
     double kinetic_energy(const State &state) const;
 
     const SceneInput &input_;
@@ -44,9 +54,7 @@ namespace nsfd
     std::vector<unsigned int> materials_; ///< of the cells of the first mesh
     Bisection cells_;
     std::unique_ptr<LeafView> view_; ///< of them, or null
-    /// by point of the present mesh: hundredths of the strength at which
-    /// indicators have been asked
-    std::vector<std::uint8_t> asked_;
+    BreakingFronts fronts_;
     unsigned int changes_ = 0;
     unsigned long long largest_cells_ = 0;
     unsigned long long n_joined_ = 0; ///< families of halves
@@ -54,6 +62,12 @@ namespace nsfd
     double lost_ = 0.;  ///< kinetic energy, J
     double worst_ = 0.; ///< of one change, relative to the largest energy
   };
+
+  /** By face of @p triangulation, which has @p cells or some of them: where
+      blocks are asked. What holds for a face holds for its parts. */
+  std::vector<dealii::Point<2>>
+  middles_of(const Bisection &cells,
+             const dealii::Triangulation<2> &triangulation);
 
   /** The longest stable step of cells of @p model halved as often as a scene
       may ask for, s. */

@@ -1,7 +1,7 @@
 #include "mesh_changes.h"
 
 #include "adaptive_mesh.h"
-#include "bisected_mesh.h"
+#include "spread_bisection.h"
 
 namespace nsfd
 {
@@ -11,8 +11,11 @@ namespace nsfd
                     Model<dim> &model)
   {
     if constexpr (dim == 2)
-      if (input.adaptivity->bisects)
+      if (input.adaptivity->bisects) {
+        if (communicator.size() > 1)
+          return std::make_unique<SpreadBisection>(input, communicator, model);
         return std::make_unique<BisectedMesh>(input, communicator, model);
+      }
     return std::make_unique<AdaptiveMesh<dim>>(input, communicator, model);
   }
 

@@ -114,8 +114,11 @@ namespace nsfd
     if (communicator.size() == 1)
       return nullptr;
     std::vector<std::string> problems, warnings; // as before
-    const auto materials = material_indices<dim>(input, *groups, *triangulation,
-                                                 problems, warnings);
+    const auto materials =
+        cell_materials.empty()
+            ? material_indices<dim>(input, *groups, *triangulation, problems,
+                                    warnings)
+            : cell_materials;
     return std::make_unique<const GhostLayer<dim>>(
         communicator, *discretization,
         std::make_unique<const Discretization<dim>>(
@@ -214,9 +217,17 @@ namespace nsfd
                                   const Communicator &communicator,
                                   const std::vector<unsigned int> &materials)
   {
-    const auto before = std::move(other); // its counters
+    cell_materials = materials;
     *discretization = Discretization<dim>(communicator, *triangulation, *groups,
                                           materials, input);
+    renew_leapfrog(input, communicator);
+  }
+
+  template <int dim>
+  void Model<dim>::renew_leapfrog(const SceneInput &input,
+                                  const Communicator &communicator)
+  {
+    const auto before = std::move(other); // its counters
     std::vector<std::string> problems;
     build_integrators(input, communicator, problems);
     if (!problems.empty())
@@ -233,19 +244,14 @@ namespace nsfd
     if (!problems.empty())
       return;
     groups = std::make_unique<MeshGroups<dim>>(input, *triangulation);
-    if (input.mesh_changes() && input.adaptivity->bisects &&
-        communicator.size() > 1) {
-      problems.push_back("Adaptivity: triangles are bisected on one rank alone "
-                         "yet: start the run without mpirun");
-      return;
-    }
     if (input.adaptivity && !input.mesh_changes())
       refine_by_place(input, *triangulation);
     charge_memory("mesh");
     std::vector<std::string> warnings;
     const auto materials = material_indices<dim>(input, *groups, *triangulation,
                                                  problems, warnings);
-    print_problems(communicator, input, "warning", warnings);
+    if (warns)
+      print_problems(communicator, input, "warning", warnings);
     if (!problems.empty())
       return;
     try {

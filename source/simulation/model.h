@@ -26,6 +26,9 @@ namespace nsfd
     std::unique_ptr<dealii::Triangulation<dim>> triangulation;
     std::unique_ptr<MeshGroups<dim>> groups;
     std::unique_ptr<Discretization<dim>> discretization;
+    /// by active cell, where cells are parts of others; empty: as blocks say
+    std::vector<unsigned int> cell_materials;
+    bool warns = true; ///< of blocks without cells
     std::unique_ptr<StepControl> control;
     double explicit_limit = 0.; ///< of explicit steps, s
     double compression = 0.;    ///< of the impact with which a scene begins
@@ -82,6 +85,9 @@ namespace nsfd
     void rebuild_joined(const SceneInput &input,
                         const Communicator &communicator,
                         const std::vector<unsigned int> &materials);
+    /** One that has taken no state yet. Collective. */
+    void renew_leapfrog(const SceneInput &input,
+                        const Communicator &communicator);
 
     /** Bodies and points are all that a run needs of it. */
     void forget_mesh()

@@ -93,7 +93,9 @@ namespace nsfd
     if (input.time.scheme.at_nodes)
       explicit_limit = communicator.min(limit_of_cells(input, *discretization));
     if constexpr (dim == 2)
-      if (input.mesh_changes() && input.adaptivity->bisects)
+      // on several ranks the whole mesh says it: see SpreadBisection
+      if (input.mesh_changes() && input.adaptivity->bisects &&
+          communicator.size() == 1)
         explicit_limit = longest_bisected_step(input, *this);
     compression = compression_of_impact(input, *discretization, communicator);
     const bool quasi_static = input.statics && input.statics->steps;

@@ -165,8 +165,8 @@ namespace nsfd
   bool RunRecorder<dim>::looks_at(const State &state) const
   {
     constexpr unsigned int interval = 64; // of Extremes, in short steps
-    return observers_ || observer_ || state.step % interval == 0 ||
-           output_->is_due(state);
+    return observers_ || (observer_ && observer_->wants_states()) ||
+           state.step % interval == 0 || output_->is_due(state);
   }
 
   template <int dim>

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <iostream>
+#include <stdexcept>
 
 namespace nsfd
 {
@@ -100,7 +101,13 @@ namespace nsfd
     template <int dim>
     bool Simulation<dim>::build()
     {
-      const auto problems = model_.build(input_, communicator_);
+      auto problems = model_.build(input_, communicator_);
+      if (problems.empty() && input_.mesh_changes())
+        try {
+          parts_.adaptive = make_mesh_changes(input_, communicator_, model_);
+        } catch (const std::runtime_error &error) {
+          problems.push_back(error.what());
+        }
       print_problems(communicator_, input_, "error", problems);
       return problems.empty();
     }
@@ -141,7 +148,6 @@ namespace nsfd
         state_ = model_.initial_state();
         return true;
       }
-      parts_.adaptive = make_mesh_changes(input_, communicator_, model_);
       state_ =
           found ? parts_.adaptive->restore(stored_cells(*found, communicator_))
                 : parts_.adaptive->start();

@@ -278,7 +278,7 @@ namespace nsfd
         continue;
       const double share =
           share_of(k) * std::sqrt(near_.square[n]) / law(k).strength();
-      if (share >= 0.5)
+      if (share >= StrengthSites<dim>::looked_at)
         visit(sites_[k].first_point, share);
     }
   }

@@ -56,7 +56,8 @@ namespace nsfd
     /** The tractions of the last step. Collective. */
     void serialize(const Communicator &communicator, Archive &archive);
     /** Of faces that are not released, as far as the last step has looked at
-        them: from half of the strength on. @p visit(first point, share). */
+        them: from StrengthSites::looked_at of the strength on. Of lower ones
+        some are known, by blocks of cells. @p visit(first point, share). */
     void
     visit_near(const std::function<void(unsigned int, double)> &visit) const;
     /** Mean tractions at intact points in their frames, Pa. */

@@ -62,6 +62,11 @@ namespace nsfd
     /** What it consists of. */
     struct Parts {
       const OneStepProblem<dim> &constants; ///< of the points of the mesh
+      /// of the points that are stepped, with ghosts, and which of the others
+      /// they are: see LeapfrogGhosts
+      const OneStepProblem<dim> &stepped;
+      const Discretization<dim> &discretization;
+      const std::vector<unsigned int> &own_points;
       const JoinedMesh<dim> &mesh;
       const HangingNodes<dim> &hanging;
       const FaceRelease<dim> &faces;
@@ -69,7 +74,14 @@ namespace nsfd
     };
     Parts parts() const
     {
-      return {own_ ? *own_ : all_, mesh_, hanging_, faces_, points_};
+      return {own_ ? *own_ : all_,
+              all_,
+              discretization_,
+              ghosts_.own_points(),
+              mesh_,
+              hanging_,
+              faces_,
+              points_};
     }
     /** Faces at hanging nodes; nothing: there are none. Collective. */
     std::optional<typename FaceRelease<dim>::Held> held_faces() const

@@ -6,6 +6,7 @@
 #include "postprocess/face_pieces.h"
 
 #include "nsfd/core/archive.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <fmt/format.h>
 
@@ -34,6 +35,15 @@ namespace nsfd
       : case_(verification), time_(time), discretization_(discretization),
         communicator_(communicator)
   {
+  }
+
+  template <int dim>
+  bool CaseObserver<dim>::wants_states() const
+  {
+    const auto &materials = discretization_.input().materials;
+    return case_.wants_cells() || case_.wants_opening() ||
+           std::any_of(materials.begin(), materials.end(),
+                       [](const MaterialInput &m) { return m.rigid; });
   }
 
   template <int dim>

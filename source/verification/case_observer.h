@@ -26,6 +26,9 @@ namespace nsfd
                  const Discretization<dim> &discretization,
                  const Communicator &communicator);
 
+    /** Of every step; else observe() needs what `row` has alone. */
+    bool wants_states() const;
+
     /** @p observables: of this step, or null. Collective. */
     void observe(const State &state, const HistoryRow &row,
                  const std::vector<ObservableRecord> *observables = nullptr);

@@ -72,6 +72,18 @@ end
         {"isotropic_tetrahedra",
          {"dimension=3", "Mesh/type=isotropic", origin, corner,
           "Mesh/cells=1500", "Time/end=6 ns"}},
+        // cells are halved where it breaks, and joined again
+        {"bisected",
+         {"dimension=2", "Mesh/type=crossed triangles", "Mesh/cells=8, 8",
+          "Interface: all/toughness=0.2 J/m^2", "Adaptivity/levels=2",
+          "Adaptivity/ahead=0.02", "Indicator: front/type=process zone",
+          "Indicator: front/cells=4", "Indicator: front/reach=0",
+          "Indicator: front/traction=0.9", "Time/end=6 ns"}},
+        {"bisected_isotropic",
+         {"dimension=2", "Mesh/type=isotropic", "Mesh/cells=200",
+          "Adaptivity/levels=1", "Adaptivity/ahead=0.3",
+          "Indicator: front/type=process zone", "Indicator: front/cells=2",
+          "Indicator: front/reach=0.5"}},
         {"quads", {"dimension=2", "Interface: all/restitution=0.2"}},
         {"distorted_quads",
          {"dimension=2", distorted, "Mesh/cells=6, 6",
@@ -159,6 +171,14 @@ end
            {"node_problems", "newton", "gauss_seidel_sweeps", "released_points",
             "active_points", "groups", "worst_excess_over_strength"})
         EXPECT_EQ(one.counter(key), several.counter(key)) << key;
+      if (row.name.rfind("bisected", 0) == 0) {
+        EXPECT_GT(one.counter("mesh_changes"), 1.);
+        if (row.name == "bisected")
+          EXPECT_GT(one.counter("joined_halves"), 0.);
+        for (const char *key :
+             {"mesh_changes", "joined_halves", "mesh_change_energy"})
+          EXPECT_EQ(one.counter(key), several.counter(key)) << key;
+      }
       EXPECT_TRUE(fields == records(several, "fields"));
     }
   }

@@ -13,15 +13,15 @@ namespace nsfd
 {
   namespace
   {
-    /** Places with their zones, in boxes of the way that is looked around. */
+    /** Places with their zones, in boxes that are small against the way that
+        is looked around. */
     class Fronts
     {
     public:
       using Front = std::array<double, 4>; ///< place and zone, m
 
-      Fronts(const std::vector<double> &numbers, const double reach,
-             const double largest_body)
-          : fronts_(numbers.size() / 4)
+      Fronts(const std::vector<double> &numbers, const double reach)
+          : reach_(reach), fronts_(numbers.size() / 4)
       {
         std::array<double, 3> highest{};
         for (std::size_t k = 0; k < fronts_.size(); ++k) {
@@ -33,7 +33,7 @@ namespace nsfd
             highest[c] = k == 0 ? x : std::max(highest[c], x);
           }
         }
-        width_ = reach * largest_ + largest_body;
+        width_ = reach * largest_ / 4.;
         std::size_t n = 1;
         const auto set_sizes = [&] {
           n = 1;
@@ -54,17 +54,21 @@ namespace nsfd
         std::partial_sum(first_.begin(), first_.end(), first_.begin());
       }
 
-      /** All that may be near, until @p visit says that it has seen enough. */
+      /** All that may be nearer than their reach and @p own, until @p visit
+          says that it has seen enough. */
       template <typename Visit>
-      void visit(const std::array<double, 3> &centre, const Visit &visit) const
+      void visit(const std::array<double, 3> &centre, const double own,
+                 const Visit &visit) const
       {
+        const double near = reach_ * largest_ + own;
         std::array<std::size_t, 3> begin{}, end{};
         for (unsigned int c = 0; c < 3; ++c) {
-          const double at = (centre[c] - lowest_[c]) / width_;
-          if (!(at > -1. && at < double(size_[c]) + 1.))
+          const double low = (centre[c] - near - lowest_[c]) / width_,
+                       high = (centre[c] + near - lowest_[c]) / width_;
+          if (!(high >= 0. && low < double(size_[c])))
             return;
-          begin[c] = std::size_t(std::max(0., at - 1.));
-          end[c] = std::min(size_[c], std::size_t(at + 1.) + 1);
+          begin[c] = std::size_t(std::max(0., low));
+          end[c] = std::size_t(std::min(double(size_[c]), high + 1.));
         }
         for (std::size_t z = begin[2]; z < end[2]; ++z)
           for (std::size_t y = begin[1]; y < end[1]; ++y) {
@@ -85,6 +89,7 @@ namespace nsfd
         return box;
       }
 
+      double reach_;
       std::vector<Front> fronts_;
       std::vector<std::size_t> first_; ///< of a box, x first; size n + 1
       std::array<double, 3> lowest_{};
@@ -163,29 +168,32 @@ namespace nsfd
         if (all.empty())
           return;
         const auto &bodies = view.bodies();
-        double largest_body = 0., smallest_zone = all[3];
-        for (const auto &body : bodies)
-          largest_body = std::max(largest_body, body.size);
+        double smallest_zone = all[3];
         for (std::size_t k = 3; k < all.size(); k += 4)
           smallest_zone = std::min(smallest_zone, all[k]);
         // the cell itself may be much larger than the zone
         const double reach = reach_ + 0.25, own = 0.75;
-        const Fronts fronts(all, reach, own * largest_body);
-        for (std::size_t b = 0; b < bodies.size(); ++b)
-          fronts.visit(bodies[b].centre, [&](const Fronts::Front &front) {
-            if (!asks(b, front[3]))
-              return false;
-            const double near = reach * front[3] + own * bodies[b].size;
-            double square = 0.;
-            for (unsigned int c = 0; c < 3; ++c) {
-              const double d = bodies[b].centre[c] - front[c];
-              square += d * d;
-            }
-            if (!(square < near * near))
-              return false;
-            visit(b, front[3]);
-            return front[3] == smallest_zone;
-          });
+        const Fronts fronts(all, reach);
+        for (std::size_t b = 0; b < bodies.size(); ++b) {
+          if (!asks(b, smallest_zone)) // nor does a larger one
+            continue;
+          const double of_body = own * bodies[b].size;
+          fronts.visit(bodies[b].centre, of_body,
+                       [&](const Fronts::Front &front) {
+                         if (!asks(b, front[3]))
+                           return false;
+                         const double near = reach * front[3] + of_body;
+                         double square = 0.;
+                         for (unsigned int c = 0; c < 3; ++c) {
+                           const double d = bodies[b].centre[c] - front[c];
+                           square += d * d;
+                         }
+                         if (!(square < near * near))
+                           return false;
+                         visit(b, front[3]);
+                         return front[3] == smallest_zone;
+                       });
+        }
       }
 
       double cells_, traction_, reach_;
