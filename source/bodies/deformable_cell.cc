@@ -93,6 +93,32 @@ namespace nsfd
           T[i * n + j] = T[j * n + i] = (T[i * n + j] + T[j * n + i]) / 2.;
     }
 
+    void symmetrize(const unsigned int n, double *K)
+    {
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j < i; ++j) {
+          double &a = K[std::size_t(i) * n + j], &b = K[std::size_t(j) * n + i];
+          a = b = (a + b) / 2.;
+        }
+    }
+
+    /** By Cholesky's factorization, which takes the place of @p A. */
+    bool positive_definite(const unsigned int n, double *A)
+    {
+      for (unsigned int k = 0; k < n; ++k) {
+        double *column = A + std::size_t(k) * n;
+        if (!(column[k] > 0.))
+          return false;
+        for (unsigned int j = k + 1; j < n; ++j) {
+          const double factor = column[j] / column[k];
+          double *other = A + std::size_t(j) * n;
+          for (unsigned int i = j; i < n; ++i)
+            other[i] -= factor * column[i];
+        }
+      }
+      return true;
+    }
+
     CellMotion motion_of(const FiniteStep &step, const double *end)
     {
       return {step.displacement, end, step.theta, step.time_step, step.history};
@@ -277,14 +303,24 @@ namespace nsfd
       add_tangent(q, point.F, point.F, without_compression<dim>(point.turning),
                   point.tangent, K);
     }
-    // equal in exact arithmetic only
-    for (unsigned int i = 0; i < n_dofs(); ++i)
-      for (unsigned int j = 0; j < i; ++j) {
-        double &a = K[std::size_t(i) * n_dofs() + j],
-               &b = K[std::size_t(j) * n_dofs() + i];
-        a = b = (a + b) / 2.;
-      }
+    symmetrize(n_dofs(), K); // equal in exact arithmetic only
     return true;
+  }
+
+  template <int dim>
+  bool DeformableCell<dim>::step_tangent(const CellMotion &motion,
+                                         const double *mass, double *K) const
+  {
+    constexpr double least_mass = 0.1;
+    const unsigned int n = n_dofs();
+    if (!tangent(motion, K))
+      return false;
+    symmetrize(n, K);
+    std::vector<double> A(std::size_t(n) * n);
+    const double factor = motion.time_step * motion.time_step * motion.theta;
+    for (std::size_t i = 0; i < A.size(); ++i)
+      A[i] = (1. - least_mass) * mass[i] + factor * K[i];
+    return positive_definite(n, A.data()) || symmetric_tangent(motion, K);
   }
 
   /** The residual at @p v, with the end of the step it leads to. */

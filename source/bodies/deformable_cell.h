@@ -93,6 +93,14 @@ namespace nsfd
     bool symmetric_tangent(const CellMotion &motion, double *K) const;
 
     /**
+     * The symmetric part of tangent(), where with it and @p mass the matrix of
+     * the step, M + h^2 theta K, leaves no motion much softer than its mass
+     * alone; else symmetric_tangent().
+     */
+    bool step_tangent(const CellMotion &motion, const double *mass,
+                      double *K) const;
+
+    /**
      * Find @p v with
      *
      *   M (v - v_k) + h f(u_k, u_k + h (theta v + (1 - theta) v_k))
