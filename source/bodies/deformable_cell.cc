@@ -409,7 +409,7 @@ namespace nsfd
                                     FiniteScratch &scratch) const
   {
     constexpr unsigned int most_steps = 50;
-    constexpr double fast = 1e-3;
+    constexpr double fast = 0.1;
     Balance now;
     if (!balance(step, v, scratch, now))
       return false;
