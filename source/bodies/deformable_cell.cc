@@ -289,8 +289,8 @@ namespace nsfd
   }
 
   template <int dim>
-  bool DeformableCell<dim>::symmetric_tangent(const CellMotion &motion,
-                                              double *K) const
+  bool DeformableCell<dim>::add_symmetric(const CellMotion &motion,
+                                          const bool definite, double *K) const
   {
     std::fill_n(K, std::size_t(n_dofs()) * n_dofs(), 0.);
     Point point;
@@ -299,12 +299,22 @@ namespace nsfd
       if (!set_point(q, motion, true, point))
         return false;
       symmetrize<dim>(point.tangent);
-      make_definite<dim>(at_rest, least_share(), point.tangent);
-      add_tangent(q, point.F, point.F, without_compression<dim>(point.turning),
+      if (definite)
+        make_definite<dim>(at_rest, least_share(), point.tangent);
+      add_tangent(q, point.F, point.F,
+                  definite ? without_compression<dim>(point.turning)
+                           : point.turning,
                   point.tangent, K);
     }
     symmetrize(n_dofs(), K); // equal in exact arithmetic only
     return true;
+  }
+
+  template <int dim>
+  bool DeformableCell<dim>::symmetric_tangent(const CellMotion &motion,
+                                              double *K) const
+  {
+    return add_symmetric(motion, true, K);
   }
 
   template <int dim>
@@ -313,14 +323,13 @@ namespace nsfd
   {
     constexpr double least_mass = 0.1;
     const unsigned int n = n_dofs();
-    if (!tangent(motion, K))
+    if (!add_symmetric(motion, false, K))
       return false;
-    symmetrize(n, K);
     std::vector<double> A(std::size_t(n) * n);
     const double factor = motion.time_step * motion.time_step * motion.theta;
     for (std::size_t i = 0; i < A.size(); ++i)
       A[i] = (1. - least_mass) * mass[i] + factor * K[i];
-    return positive_definite(n, A.data()) || symmetric_tangent(motion, K);
+    return positive_definite(n, A.data()) || add_symmetric(motion, true, K);
   }
 
   /** The residual at @p v, with the end of the step it leads to. */
