@@ -56,8 +56,6 @@ namespace nsfd
     const Communicator &all = parts_.delassus.communicator();
     const std::vector<double> before(bodies_.velocity());
     share_ = 1.;
-    if (!all.any(r != applied_))
-      return true; // it has moved so already
     if (!all.any(!bodies_.move(r, v))) {
       applied_ = r;
       return true;
