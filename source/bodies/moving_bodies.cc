@@ -268,7 +268,6 @@ namespace nsfd
   bool MovingBodies<dim>::move(const std::vector<double> &r,
                                const std::vector<double> &v)
   {
-    const std::vector<double> before(motion_.v);
     motion_.v = v;
     for (std::size_t b = 0; b < layout_.size(); ++b) {
       const MovingBody &mover = layout_[b];
@@ -288,12 +287,10 @@ namespace nsfd
         double *const now = motion_.v.data() + bodies_.first_dof[b];
         if (!cells_.of(c)->solve(step, now, scratch_)) {
           // what the tangent foretells may be turned inside out
-          std::copy_n(before.data() + bodies_.first_dof[b],
+          std::copy_n(motion_.v_old.data() + bodies_.first_dof[b],
                       bodies_.classes[b].n_dofs, now);
-          if (!cells_.of(c)->solve(step, now, scratch_)) {
-            motion_.v = before;
+          if (!cells_.of(c)->solve(step, now, scratch_))
             return false;
-          }
         }
       } else {
         RigidLoad load = load_of(mover);

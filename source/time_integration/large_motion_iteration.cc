@@ -5,27 +5,20 @@
 namespace nsfd
 {
   template <int dim>
-  void LargeMotionModel<dim>::set_tangents()
+  void LargeMotionModel<dim>::linearise()
   {
     tangent_velocity_ = bodies_.velocity();
     bodies_.set_middle();
     parts_.delassus.renew(time_step_, parts_.input.time.theta);
     set_problem();
-  }
-
-  template <int dim>
-  void LargeMotionModel<dim>::linearise()
-  {
-    set_tangents();
-    forecast(false);
+    forecast(applied_.empty());
   }
 
   template <int dim>
   bool LargeMotionModel<dim>::predict(const bool starts_cold,
                                       std::vector<double> &impulse)
   {
-    set_tangents();
-    forecast(true);
+    linearise();
     impulse = old_.impulse;
     if (starts_cold)
       std::fill(impulse.begin(), impulse.end(), 0.);
@@ -49,9 +42,13 @@ namespace nsfd
    * motion at hand, and the next round goes on from there.
    */
   template <int dim>
-  bool LargeMotionModel<dim>::move_towards(const std::vector<double> &r,
-                                           const std::vector<double> &v)
+  bool LargeMotionModel<dim>::move(const std::vector<double> &impulse,
+                                   const std::vector<double> &v)
   {
+    std::vector<double> P(impulse), r(v.size());
+    for (std::size_t k = 0; k < pressure_impulse_.size(); ++k)
+      P[k] += pressure_impulse_[k];
+    parts_.delassus.generalised_impulse(P.data(), r.data());
     constexpr double least_share = 1. / 64.;
     const Communicator &all = parts_.delassus.communicator();
     const std::vector<double> before(bodies_.velocity());
@@ -75,17 +72,6 @@ namespace nsfd
       }
     }
     return false;
-  }
-
-  template <int dim>
-  bool LargeMotionModel<dim>::move(const std::vector<double> &impulse,
-                                   const std::vector<double> &v)
-  {
-    std::vector<double> all(impulse), r(v.size());
-    for (std::size_t k = 0; k < pressure_impulse_.size(); ++k)
-      all[k] += pressure_impulse_[k];
-    parts_.delassus.generalised_impulse(all.data(), r.data());
-    return move_towards(r, v);
   }
 
   template <int dim>
@@ -119,11 +105,8 @@ namespace nsfd
   }
 
 #define INSTANTIATE(dim)                                                       \
-  template void LargeMotionModel<dim>::set_tangents();                         \
   template void LargeMotionModel<dim>::linearise();                            \
   template bool LargeMotionModel<dim>::predict(bool, std::vector<double> &);   \
-  template bool LargeMotionModel<dim>::move_towards(                           \
-      const std::vector<double> &, const std::vector<double> &);               \
   template bool LargeMotionModel<dim>::move(const std::vector<double> &,       \
                                             const std::vector<double> &);      \
   template double LargeMotionModel<dim>::error() const;                        \

@@ -63,10 +63,7 @@ namespace nsfd
   private:
     void add_contacts();
     void set_problem();
-    void set_tangents();
     void forecast(bool first);
-    bool move_towards(const std::vector<double> &r,
-                      const std::vector<double> &v);
     void refuse_missed_contacts(const State &next) const;
 
     const StepParts<dim> parts_;
