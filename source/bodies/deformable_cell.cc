@@ -93,6 +93,32 @@ namespace nsfd
           T[i * n + j] = T[j * n + i] = (T[i * n + j] + T[j * n + i]) / 2.;
     }
 
+    void symmetrize(const unsigned int n, double *K)
+    {
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j < i; ++j) {
+          double &a = K[std::size_t(i) * n + j], &b = K[std::size_t(j) * n + i];
+          a = b = (a + b) / 2.;
+        }
+    }
+
+    /** By Cholesky's factorization, which takes the place of @p A. */
+    bool positive_definite(const unsigned int n, double *A)
+    {
+      for (unsigned int k = 0; k < n; ++k) {
+        double *column = A + std::size_t(k) * n;
+        if (!(column[k] > 0.))
+          return false;
+        for (unsigned int j = k + 1; j < n; ++j) {
+          const double factor = column[j] / column[k];
+          double *other = A + std::size_t(j) * n;
+          for (unsigned int i = j; i < n; ++i)
+            other[i] -= factor * column[i];
+        }
+      }
+      return true;
+    }
+
     CellMotion motion_of(const FiniteStep &step, const double *end)
     {
       return {step.displacement, end, step.theta, step.time_step, step.history};
@@ -263,8 +289,8 @@ namespace nsfd
   }
 
   template <int dim>
-  bool DeformableCell<dim>::symmetric_tangent(const CellMotion &motion,
-                                              double *K) const
+  bool DeformableCell<dim>::add_symmetric(const CellMotion &motion,
+                                          const bool definite, double *K) const
   {
     std::fill_n(K, std::size_t(n_dofs()) * n_dofs(), 0.);
     Point point;
@@ -273,18 +299,37 @@ namespace nsfd
       if (!set_point(q, motion, true, point))
         return false;
       symmetrize<dim>(point.tangent);
-      make_definite<dim>(at_rest, least_share(), point.tangent);
-      add_tangent(q, point.F, point.F, without_compression<dim>(point.turning),
+      if (definite)
+        make_definite<dim>(at_rest, least_share(), point.tangent);
+      add_tangent(q, point.F, point.F,
+                  definite ? without_compression<dim>(point.turning)
+                           : point.turning,
                   point.tangent, K);
     }
-    // equal in exact arithmetic only
-    for (unsigned int i = 0; i < n_dofs(); ++i)
-      for (unsigned int j = 0; j < i; ++j) {
-        double &a = K[std::size_t(i) * n_dofs() + j],
-               &b = K[std::size_t(j) * n_dofs() + i];
-        a = b = (a + b) / 2.;
-      }
+    symmetrize(n_dofs(), K); // equal in exact arithmetic only
     return true;
+  }
+
+  template <int dim>
+  bool DeformableCell<dim>::symmetric_tangent(const CellMotion &motion,
+                                              double *K) const
+  {
+    return add_symmetric(motion, true, K);
+  }
+
+  template <int dim>
+  bool DeformableCell<dim>::step_tangent(const CellMotion &motion,
+                                         const double *mass, double *K) const
+  {
+    constexpr double least_mass = 0.1;
+    const unsigned int n = n_dofs();
+    if (!add_symmetric(motion, false, K))
+      return false;
+    std::vector<double> A(std::size_t(n) * n);
+    const double factor = motion.time_step * motion.time_step * motion.theta;
+    for (std::size_t i = 0; i < A.size(); ++i)
+      A[i] = (1. - least_mass) * mass[i] + factor * K[i];
+    return positive_definite(n, A.data()) || add_symmetric(motion, true, K);
   }
 
   /** The residual at @p v, with the end of the step it leads to. */
@@ -373,7 +418,7 @@ namespace nsfd
                                     FiniteScratch &scratch) const
   {
     constexpr unsigned int most_steps = 50;
-    constexpr double fast = 1e-3;
+    constexpr double fast = 0.1;
     Balance now;
     if (!balance(step, v, scratch, now))
       return false;

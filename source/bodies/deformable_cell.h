@@ -93,6 +93,16 @@ namespace nsfd
     bool symmetric_tangent(const CellMotion &motion, double *K) const;
 
     /**
+     * With F on both sides, the symmetric part of dS and all of S, where with
+     * this and @p mass the matrix of the step, M + h^2 theta K, leaves no
+     * motion much softer than its mass alone; else symmetric_tangent(). (Bodies
+     * that turn are nearer to F on both sides than to the symmetric part of
+     * tangent().)
+     */
+    bool step_tangent(const CellMotion &motion, const double *mass,
+                      double *K) const;
+
+    /**
      * Find @p v with
      *
      *   M (v - v_k) + h f(u_k, u_k + h (theta v + (1 - theta) v_k))
@@ -132,6 +142,8 @@ namespace nsfd
     void add_tangent(unsigned int q, const double *F_left,
                      const double *F_right, const Voigt<dim> &geometric,
                      const VoigtBlock<dim> &tangent, double *K) const;
+    bool add_symmetric(const CellMotion &motion, bool definite,
+                       double *K) const;
     bool balance(const FiniteStep &step, const double *v,
                  FiniteScratch &scratch, Balance &result) const;
     bool factorize_derivative(const FiniteStep &step,

@@ -227,7 +227,7 @@ namespace nsfd
     const BodyClass &cell = cells.classes[k];
     const unsigned int n = body.n_dofs;
     std::vector<double> tangent(std::size_t(n) * n);
-    cells_.of(c)->symmetric_tangent(motion_of(c), tangent.data());
+    cells_.of(c)->step_tangent(motion_of(c), cells_.mass(c), tangent.data());
     body.stiffness = Block(n, n);
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int j = 0; j < n; ++j)
@@ -284,9 +284,14 @@ namespace nsfd
         step.load = motion_.forces.data() + first;
         step.impulse = impulse;
         step.history = motion_.history.data() + cells_.first_history(c);
-        if (!cells_.of(c)->solve(step, motion_.v.data() + bodies_.first_dof[b],
-                                 scratch_))
-          return false;
+        double *const now = motion_.v.data() + bodies_.first_dof[b];
+        if (!cells_.of(c)->solve(step, now, scratch_)) {
+          // what the tangent foretells may be turned inside out
+          std::copy_n(motion_.v_old.data() + bodies_.first_dof[b],
+                      bodies_.classes[b].n_dofs, now);
+          if (!cells_.of(c)->solve(step, now, scratch_))
+            return false;
+        }
       } else {
         RigidLoad load = load_of(mover);
         for (unsigned int d = 0; d < dim; ++d)

@@ -115,7 +115,11 @@ namespace nsfd
     step.bisections = control.level();
     // A shorter step is the cure for a step with several solutions, but not
     // for every hard one: each further attempt may cost twice as much.
-    step.idle_rounds <<= step.can_be_shorter ? std::min(attempts_, 10u) : 10;
+    // Where steps have become short already, work pays as well.
+    step.idle_rounds <<=
+        step.can_be_shorter
+            ? std::min(std::max(attempts_, control.level()), 10u)
+            : 10;
     // the one place that catches StepRejected and shortens the step
     try {
       // what keeps its motion by itself is not left in the middle of a step

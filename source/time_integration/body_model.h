@@ -79,6 +79,10 @@ namespace nsfd
     virtual StepPoints<dim> points() = 0;
     /** Of the bodies now. */
     virtual const std::vector<double> &velocity() const = 0;
+    /** The motion without the impulses that it was found with, linear in them;
+        @p impulse are those. */
+    virtual std::vector<double>
+    free_velocity(const std::vector<double> &impulse) const = 0;
     /** H v at the end of the step, relative to obstacles that move. */
     virtual void relative_velocity(const std::vector<double> &v,
                                    std::vector<double> &U) const = 0;

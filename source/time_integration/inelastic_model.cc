@@ -139,6 +139,17 @@ namespace nsfd
   }
 
   template <int dim>
+  std::vector<double>
+  InelasticModel<dim>::free_velocity(const std::vector<double> &impulse) const
+  {
+    std::vector<double> less(impulse), v(v_);
+    for (double &P : less)
+      P = -P;
+    parts_.delassus.add_velocity_change(less.data(), v.data());
+    return v;
+  }
+
+  template <int dim>
   void InelasticModel<dim>::relative_velocity(const std::vector<double> &v,
                                               std::vector<double> &U) const
   {

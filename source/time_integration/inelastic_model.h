@@ -35,6 +35,8 @@ namespace nsfd
 
     StepPoints<dim> points() override;
     const std::vector<double> &velocity() const override { return v_; }
+    std::vector<double>
+    free_velocity(const std::vector<double> &impulse) const override;
     void relative_velocity(const std::vector<double> &v,
                            std::vector<double> &U) const override;
     double kinetic_product(const std::vector<double> &v) const override;

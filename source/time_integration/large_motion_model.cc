@@ -175,6 +175,7 @@ namespace nsfd
     const double theta = parts_.input.time.theta;
     start_ = &old;
     time_step_ = h;
+    applied_.clear();
     held_rows_.start(old);
     next.obstacle_shift = obstacles_.shifts(old, h);
     bodies_.start(old, h, theta, loads, old.obstacle_shift,
@@ -333,63 +334,6 @@ namespace nsfd
         active_[k] = 1;
       problem_.contact[i] = active_[k];
     }
-  }
-
-  // ---------------------------------------------------------- the iteration
-
-  template <int dim>
-  void LargeMotionModel<dim>::set_tangents()
-  {
-    tangent_velocity_ = bodies_.velocity();
-    bodies_.set_middle();
-    parts_.delassus.renew(time_step_, parts_.input.time.theta);
-    set_problem();
-  }
-
-  template <int dim>
-  void LargeMotionModel<dim>::linearise()
-  {
-    set_tangents();
-    forecast(false);
-  }
-
-  template <int dim>
-  bool LargeMotionModel<dim>::predict(const bool starts_cold,
-                                      std::vector<double> &impulse)
-  {
-    set_tangents();
-    forecast(true);
-    impulse = old_.impulse;
-    if (starts_cold)
-      std::fill(impulse.begin(), impulse.end(), 0.);
-    else {
-      history_.add_impulses(*start_, impulse);
-      // what does not touch in this step has none
-      for (std::size_t i = 0; i < problem_.n_points; ++i)
-        if (problem_.kind[i] == PointKind::free && !problem_.contact[i])
-          std::fill_n(impulse.begin() + long(i * dim), dim, 0.);
-    }
-    return move(impulse, tangent_velocity_);
-  }
-
-  template <int dim>
-  bool LargeMotionModel<dim>::move(const std::vector<double> &impulse,
-                                   const std::vector<double> &v)
-  {
-    std::vector<double> all(impulse), r(v.size());
-    for (std::size_t k = 0; k < pressure_impulse_.size(); ++k)
-      all[k] += pressure_impulse_[k];
-    parts_.delassus.generalised_impulse(all.data(), r.data());
-    return !parts_.delassus.communicator().any(!bodies_.move(r, v));
-  }
-
-  template <int dim>
-  double LargeMotionModel<dim>::error() const
-  {
-    std::vector<double> change(bodies_.velocity());
-    for (std::size_t k = 0; k < change.size(); ++k)
-      change[k] -= tangent_velocity_[k];
-    return kinetic_product(change);
   }
 
   // ------------------------------------------------------- end of the step

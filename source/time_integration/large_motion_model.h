@@ -48,6 +48,8 @@ namespace nsfd
 
     StepPoints<dim> points() override;
     const std::vector<double> &velocity() const override;
+    std::vector<double>
+    free_velocity(const std::vector<double> &impulse) const override;
     void relative_velocity(const std::vector<double> &v,
                            std::vector<double> &U) const override;
     double kinetic_product(const std::vector<double> &v) const override;
@@ -61,7 +63,6 @@ namespace nsfd
   private:
     void add_contacts();
     void set_problem();
-    void set_tangents();
     void forecast(bool first);
     void refuse_missed_contacts(const State &next) const;
 
@@ -83,5 +84,7 @@ namespace nsfd
     std::vector<char> active_;             ///< contacts of the step: forecast
     std::vector<double> pressure_impulse_; ///< in cracks
     std::vector<double> tangent_velocity_; ///< of the tangents at hand
+    std::vector<double> applied_; ///< to bodies, with the traces of then
+    double share_ = 1.; ///< of the way to the impulses of the last round
   };
 } // namespace nsfd

@@ -3,6 +3,7 @@
 #include "ghost_states.h"
 
 #include "nsfd/core/archive.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
 #include <cmath>

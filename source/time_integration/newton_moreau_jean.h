@@ -60,11 +60,13 @@ namespace nsfd
     std::unique_ptr<BodyModel<dim>> bodies_;
     std::function<void()> stay_; ///< in place of their motion
     const std::string solver_name_;
+    bool only_rigid_ = false;
     unsigned long long iterations_ = 0, most_iterations_ = 0;
 
     // of the step
     std::vector<double> impulse_;
     std::vector<double> v_free_; ///< linear, by unknown
     double energy_scale_ = 0.;
+    std::vector<double> errors_; ///< of its rounds
   };
 } // namespace nsfd

@@ -250,9 +250,9 @@ namespace nsfd
    * into a contact, and h times the largest approach speed at an activation.
    * In every step the solver leaves R (P - P*) of the velocity that the law
    * asks for. A point that was forecast to stay open may have come in during
-   * the last step, with the speed of its end: then the longer of the two
-   * steps counts. One that was parting from an overlap and is pushed back comes
-   * on top of it.
+   * the last step, with the speed of its end: then that step counts, and the
+   * part of this one that is before its impact. One that was parting from an
+   * overlap and is pushed back comes on top of it.
    */
   template <int dim>
   void PointBalance<dim>::add_penetration(const std::size_t i)
@@ -268,7 +268,8 @@ namespace nsfd
       released = std::max(released, depth);
     if (problem_.contact[i]) {
       const bool came_in = !old_.contact[i] && old_.jump[i * dim] < 0.;
-      const double way = came_in ? std::max(h, old_.last_step) : h;
+      const double way =
+          came_in ? std::max(h, old_.last_step + (1. - problem_.theta) * h) : h;
       approach = std::max(approach, -way * old_.relative_velocity[i * dim]);
     } else if (depth > 0.) // the forecast did not see it come
       approach = std::max(approach, std::max(0., -old_.jump[i * dim]) -

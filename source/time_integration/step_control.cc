@@ -2,6 +2,7 @@
 
 #include "nsfd/core/archive.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +13,8 @@ namespace nsfd
     // Lengths of cells far from the origin, hence Courant numbers, are known to
     // round-off of the coordinates only: 2e-9 at 1e7 lengths of a cell.
     constexpr double round_off = 1e-8;
+
+    constexpr unsigned int most_patience = 64;
   } // namespace
 
   StepControl::StepControl(const double end, const double base,
@@ -55,9 +58,15 @@ namespace nsfd
   void StepControl::accept()
   {
     ++position_;
-    if (level_ > 0 && position_ % 2 == 0 && 2. * step() <= ceiling_) {
+    ++successes_;
+    if (went_up_)
+      patience_ = 0;
+    went_up_ = level_ > 0 && position_ % 2 == 0 && 2. * step() <= ceiling_ &&
+               successes_ >= patience_;
+    if (went_up_) {
       position_ /= 2;
       --level_;
+      successes_ = 0;
     }
     if (position_ == 1ull << level_) {
       ++base_count_;
@@ -72,6 +81,10 @@ namespace nsfd
     ++level_;
     position_ *= 2;
     ++n_bisections_;
+    if (went_up_)
+      patience_ = std::min(std::max(2 * patience_, 4u), most_patience);
+    went_up_ = false;
+    successes_ = 0;
     return true;
   }
 
@@ -80,6 +93,7 @@ namespace nsfd
     const Archive::Part part(archive, "step_control");
     archive.numbers("step_levels", start_, end_, base_, n_base_, base_count_,
                     position_, level_, maximum_level_, n_bisections_, ceiling_);
+    archive.numbers("step_patience", patience_, successes_, went_up_);
   }
 
   void StepControl::limit(const double limit)
@@ -87,6 +101,7 @@ namespace nsfd
     while (step() > limit && level_ < maximum_level_) {
       ++level_;
       position_ *= 2;
+      went_up_ = false;
     }
   }
 } // namespace nsfd

@@ -6,10 +6,12 @@ namespace nsfd
 
   /**
    * Steps by bisection: the base step divides the time to the end evenly; level
-   * l takes base / 2^l. A rejected step goes down one level at once; a success
-   * goes up one level where the position allows it, so that every time is a
-   * multiple of the base step again. Times are computed from counters, not
-   * summed.
+   * l takes base / 2^l. A rejected step goes down one level at once; two
+   * successes go up one level where the position allows it, so that every time
+   * is a multiple of the base step again. Where the first step up there is
+   * rejected, the next attempt waits for twice as many successes: what is hard
+   * over many steps would cost one attempt in three. Times are computed from
+   * counters, not summed.
    */
   class StepControl
   {
@@ -48,6 +50,9 @@ namespace nsfd
     double end_, base_, ceiling_;
     unsigned long long n_base_, base_count_ = 0, position_ = 0;
     unsigned int level_ = 0, maximum_level_, n_bisections_ = 0;
+    unsigned int patience_ = 0;  ///< successes before the next way up
+    unsigned int successes_ = 0; ///< since the last change of level
+    bool went_up_ = false;       ///< by the last success
     double start_;
   };
 } // namespace nsfd

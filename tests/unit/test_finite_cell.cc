@@ -176,6 +176,43 @@ namespace finite_strain::test_finite_cell
     symmetric_tangent_is_semidefinite<3>();
   }
 
+  /**
+   * Between states that differ by a small strain it is the symmetric part of
+   * the derivative, compressed or not, as long as the mass carries this; beside
+   * a small mass it is the one that is definite by itself.
+   */
+  template <int dim>
+  void step_tangent_knows_the_mass()
+  {
+    for_each_law<dim>([&](const Law<dim> &law) {
+      const Cell<dim> cell(law.material, 1);
+      const unsigned int n = cell.n;
+      std::vector<double> K(n * n), exact(n * n), definite_one(n * n),
+          mass(n * n, 0.);
+      const auto crushed = turned(cell, 0.5, 0.4);
+      const CellMotion motion{crushed.data(), crushed.data(), 0.5, 1.};
+      ASSERT_TRUE(cell.finite->tangent(motion, exact.data()));
+      ASSERT_TRUE(cell.finite->symmetric_tangent(motion, definite_one.data()));
+      for (const double m : {1e3 * young, 1e-9 * young}) {
+        for (unsigned int i = 0; i < n; ++i)
+          mass[i * n + i] = m;
+        ASSERT_TRUE(cell.finite->step_tangent(motion, mass.data(), K.data()));
+        for (unsigned int i = 0; i < n; ++i)
+          for (unsigned int j = 0; j < n; ++j)
+            EXPECT_NEAR(K[i * n + j],
+                        m > young ? (exact[i * n + j] + exact[j * n + i]) / 2.
+                                  : definite_one[i * n + j],
+                        1e-12 * young);
+      }
+    });
+  }
+
+  TEST(FiniteCell, StepTangentKnowsTheMass)
+  {
+    step_tangent_knows_the_mass<2>();
+    step_tangent_knows_the_mass<3>();
+  }
+
   TEST(FiniteCell, CellsInsideOutAreRefused)
   {
     for_each_law<2>([](const Law<2> &law) {

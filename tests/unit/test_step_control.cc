@@ -63,6 +63,32 @@ TEST(StepControl, DownAtOnceUpOneLevelPerStep)
   EXPECT_EQ(control.bisections(), 0u) << "no step was rejected";
 }
 
+// What is hard over many steps costs few attempts: of 256 short steps, where
+// each of twice their length is rejected, the waits are 2, 4, 8, ... 64.
+TEST(StepControl, WaitsWhereLongerStepsAreRejected)
+{
+  StepControl control(257., 1., 10);
+  ASSERT_TRUE(control.bisect());
+  unsigned int rejected = 0;
+  while (control.time() < 128.)
+    if (control.level() == 0) {
+      ++rejected;
+      ASSERT_TRUE(control.bisect());
+    } else
+      control.accept();
+  EXPECT_EQ(rejected, 8u);
+  // and begins anew where one of them is taken
+  while (control.level() > 0)
+    control.accept();
+  control.accept();
+  const double time = control.time();
+  ASSERT_TRUE(control.bisect());
+  control.accept();
+  control.accept();
+  EXPECT_EQ(control.level(), 0u);
+  EXPECT_EQ(control.time(), time + 1.);
+}
+
 TEST(StepControl, TheLadderEnds)
 {
   StepControl control(1., 1., 2);
