@@ -280,7 +280,7 @@ namespace nsfd
             });
       };
       add(&BodyClass::stiffness, shares.stiffness);
-      if (this->viscous_theta() > 0.)
+      if (this->terms().viscous_theta > 0.)
         add(&BodyClass::damping, shares.damping);
     }
 

@@ -12,7 +12,7 @@ namespace nsfd
   /**
    * The bodies seen from the faces: H, M_hat^{-1} and W = H M_hat^{-1} H^T,
    * with M_hat = M + h^2 theta^2 K, and + h theta C where bodies are viscous,
-   * block diagonal by body; see set_kept_step() for explicit forces. Vectors
+   * block diagonal by body; see StepTerms for explicit forces. Vectors
    * over points are in the local frames, dim entries per point; vectors over
    * bodies have Bodies::n_dofs() entries.
    *
@@ -152,38 +152,21 @@ namespace nsfd
     /** theta of M_hat = M + h^2 theta^2 K; that of the positions may differ. */
     double bulk_theta() const { return theta_; }
 
-    /**
-     * Bodies are viscous where @p theta is not 0, and h @p theta C is a part of
-     * M_hat from the next reinit() on: theta is that of the velocity whose
-     * power is dissipated.
-     */
-    void set_viscous_theta(const double theta)
+    /** Of the next reinit() on. */
+    void set_terms(const StepTerms &terms)
     {
-      if (theta != viscous_theta_)
+      if (terms.viscous_theta != terms_.viscous_theta ||
+          terms.shares(time_step_, theta_).stiffness !=
+              terms_.shares(time_step_, theta_).stiffness)
         time_step_ = 0.; // another M_hat
-      viscous_theta_ = theta;
+      terms_ = terms;
     }
-    double viscous_theta() const { return viscous_theta_; }
-
-    /**
-     * Forces act in the middle of steps that keep
-     * v.(M - @p step^2 K / 4) v / 2 + q.K q / 2, whatever their own length is:
-     * from the next reinit() on M_hat has -(step^2 - h^2) K / 4 as well, and is
-     * positive while @p step is stable. 0: forces are not explicit.
-     */
-    void set_kept_step(const double step)
-    {
-      if (shares(time_step_, theta_).stiffness !=
-          shares(time_step_, theta_, step).stiffness)
-        time_step_ = 0.; // another M_hat
-      kept_step_ = step;
-    }
-    double kept_step() const { return kept_step_; }
+    const StepTerms &terms() const { return terms_; }
 
     /** What M_hat of a step consists of. */
     StepShares shares(const double time_step, const double theta) const
     {
-      return shares(time_step, theta, kept_step_);
+      return terms_.shares(time_step, theta);
     }
 
     struct Counters {
@@ -235,15 +218,7 @@ namespace nsfd
     const std::vector<double> *free_velocity_ = nullptr;
 
   private:
-    StepShares shares(const double h, const double theta,
-                      const double kept) const
-    {
-      const double lost = kept > 0. ? (kept - h) * (kept + h) / 4. : 0.;
-      return {h * h * theta * theta - lost, h * viscous_theta_};
-    }
-
-    double viscous_theta_ = 0.; ///< 0: nothing is viscous
-    double kept_step_ = 0.;     ///< see set_kept_step(), s
+    StepTerms terms_;
   };
 
   /**

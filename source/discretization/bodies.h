@@ -70,6 +70,25 @@ namespace nsfd
     double stiffness, damping; ///< f in s^2, g in s
   };
 
+  /** What M_hat of a step of length h has beside M + h^2 theta^2 K. */
+  struct StepTerms {
+    /// of the velocity whose power is dissipated: + h viscous_theta C; 0:
+    /// nothing is viscous
+    double viscous_theta = 0.;
+    /// Forces act in the middle of steps that keep
+    /// v.(M - kept_step^2 K / 4) v / 2 + q.K q / 2, whatever their own length
+    /// is: -(kept_step^2 - h^2) K / 4, and M_hat is positive while kept_step is
+    /// stable; 0: forces are not explicit
+    double kept_step = 0.;
+
+    StepShares shares(const double h, const double theta) const
+    {
+      const double lost =
+          kept_step > 0. ? (kept_step - h) * (kept_step + h) / 4. : 0.;
+      return {h * h * theta * theta - lost, h * viscous_theta};
+    }
+  };
+
   /** Entry of M_hat of a body. */
   inline double step_entry(const BodyClass &body, const StepShares &shares,
                            const unsigned int i, const unsigned int j)

@@ -65,7 +65,7 @@ namespace nsfd
         explicit_limit = stable_limit(input, communicator);
         control = dynamic_control(input, 0.);
         check_stability(input, communicator, problems);
-        delassus->set_kept_step(longest_explicit_step());
+        keep_longest_step();
       }
       if (!problems.empty())
         return problems;
@@ -205,7 +205,7 @@ namespace nsfd
       explicit_limit = stable_limit(input, communicator);
       control->limit(explicit_limit);
       control->set_ceiling(explicit_limit);
-      delassus->set_kept_step(longest_explicit_step());
+      keep_longest_step();
     }
     delassus->reinit(control->step(), input.time.bulk_theta());
     build_integrators(input, communicator, problems);

@@ -56,8 +56,9 @@ namespace nsfd
 
     /** Step in time that the input asks for, s. */
     double dynamic_step(const SceneInput &input) const;
-    /** Of steps with explicit forces on the present mesh, s. */
-    double longest_explicit_step() const;
+    /** Steps with explicit forces keep the energy of the longest one on the
+        present mesh, see StepTerms. */
+    void keep_longest_step();
     /** Steps in time from @p start on. */
     std::unique_ptr<StepControl> dynamic_control(const SceneInput &input,
                                                  double start) const;

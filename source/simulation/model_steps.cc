@@ -166,12 +166,12 @@ namespace nsfd
   }
 
   template <int dim>
-  double Model<dim>::longest_explicit_step() const
+  void Model<dim>::keep_longest_step()
   {
     double step = control->base_step();
     while (step > explicit_limit)
       step /= 2.;
-    return step;
+    delassus->set_terms({delassus->terms().viscous_theta, step});
   }
 
   template <int dim>
@@ -209,8 +209,8 @@ namespace nsfd
                                           std::vector<std::string> &);
   template double Model<2>::dynamic_step(const SceneInput &) const;
   template double Model<3>::dynamic_step(const SceneInput &) const;
-  template double Model<2>::longest_explicit_step() const;
-  template double Model<3>::longest_explicit_step() const;
+  template void Model<2>::keep_longest_step();
+  template void Model<3>::keep_longest_step();
   template std::unique_ptr<StepControl>
   Model<2>::dynamic_control(const SceneInput &, double) const;
   template std::unique_ptr<StepControl>

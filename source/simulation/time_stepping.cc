@@ -52,7 +52,7 @@ namespace nsfd
       print_problems(communicator_, input_, "note", {text});
     };
     if (input_.time.scheme.explicit_forces)
-      model_.delassus->set_kept_step(model_.longest_explicit_step());
+      model_.keep_longest_step();
     switch (controller_.step(integrator(), state, next, report, failure)) {
     case Result::taken:
       if (!report.note.empty())

@@ -124,7 +124,7 @@ namespace nsfd
   {
     state.bond_traction.resize(state.jump.size());
     bulk.evaluate(state.displacement.data(), where, state.bond_traction.data());
-    if (bulk.delassus().viscous_theta() > 0.) {
+    if (bulk.delassus().terms().viscous_theta > 0.) {
       std::vector<double> viscous(state.jump.size());
       bulk.evaluate_viscous(state.velocity.data(), where, viscous.data());
       for (std::size_t k = 0; k < viscous.size(); ++k)

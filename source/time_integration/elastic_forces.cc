@@ -27,7 +27,7 @@ namespace nsfd
     in_step_.resize(old.velocity.size());
     for (std::size_t i = 0; i < in_step_.size(); ++i)
       in_step_[i] = start_.of_displacement[i] + h / 2. * start_.of_velocity[i];
-    const double kept = delassus_.kept_step(), before = old.kept_step;
+    const double kept = delassus_.terms().kept_step, before = old.kept_step;
     share_of_step_ = kept == before ? 0.
                                     : (kept - before) * (kept + before) / 8. *
                                           product(old.velocity, start_);

@@ -71,7 +71,7 @@ namespace nsfd
           share * energy(Operator::stiffness,
                          change_of(next.displacement, old.displacement));
     }
-    if (delassus_.viscous_theta() > 0.) {
+    if (delassus_.terms().viscous_theta > 0.) {
       change.resize(n);
       for (std::size_t i = 0; i < n; ++i)
         change[i] = theta_ * next.velocity[i] + (1. - theta_) * old.velocity[i];

@@ -77,7 +77,7 @@ namespace nsfd
     }
     for (std::size_t i = 0; i < n_dofs; ++i)
       work_[i] = h * (loads_[i] - work_[i]);
-    if (delassus_.viscous_theta() > 0.) {
+    if (delassus_.terms().viscous_theta > 0.) {
       delassus_.apply(DelassusOperator<dim>::Operator::damping,
                       old.velocity.data(), velocity_.data());
       for (std::size_t i = 0; i < n_dofs; ++i)

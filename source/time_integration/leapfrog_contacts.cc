@@ -126,11 +126,11 @@ namespace nsfd
           parted.push_back(i);
         continue;
       }
-      alone[i] = overlaps(chains, a, way) ||
-                 (chains.is_broken(a) && has_slid_off(chains, a));
+      const Left of = left(chains, a, way);
+      alone[i] = of.overlaps || (chains.is_broken(a) && of.slid);
       // one of the two chains of a point may still hold
       const PointKind other = chains.other.kind[a];
-      state_.kind[i] = has_slid_off(chains, a)    ? PointKind::free
+      state_.kind[i] = of.slid                    ? PointKind::free
                        : other == PointKind::free ? chains.problem.kind[a]
                                                   : other;
     }
@@ -160,29 +160,21 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  bool LeapfrogContacts<dim>::overlaps(const LeapfrogChains<dim> &chains,
-                                       const std::size_t a,
-                                       const double way) const
+  auto LeapfrogContacts<dim>::left(const LeapfrogChains<dim> &chains,
+                                   const std::size_t a, const double way) const
+      -> Left
   {
     constexpr double round_off = 1e-12;
-    // the other half is for the step in which it is seen
-    return has_no_spring(chains, a) &&
-           -chains.problem.jump_free[a * dim] - chains.released[a] >
-               std::max(way / 2., round_off * face_size_[chains.point[a]]);
-  }
-
-  template <int dim>
-  bool LeapfrogContacts<dim>::has_slid_off(const LeapfrogChains<dim> &chains,
-                                           const std::size_t a) const
-  {
-    const OneStepProblem<dim> &p = chains.problem;
     if (!has_no_spring(chains, a))
-      return false;
+      return {};
+    const double *u = &chains.problem.jump_free[a * dim],
+                 size = face_size_[chains.point[a]], least = inset * size;
     double square = 0.;
     for (unsigned int c = 1; c < dim; ++c)
-      square += p.jump_free[a * dim + c] * p.jump_free[a * dim + c];
-    const double least = inset * face_size_[chains.point[a]];
-    return square > least * least;
+      square += u[c] * u[c];
+    // the other half is for the step in which it is seen
+    return {square > least * least,
+            -u[0] - chains.released[a] > std::max(way / 2., round_off * size)};
   }
 
   /** Surfaces go to where the groups are. */

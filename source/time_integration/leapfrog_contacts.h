@@ -50,17 +50,18 @@ namespace nsfd
     void start(const State &state);
 
     /** Points of the mesh that are left to the search now, by what active ones
-        are; @p way as for overlaps(). */
+        are; @p way as for left(). */
     std::vector<unsigned int> part(const LeapfrogChains<dim> &chains,
                                    double way);
-    /** Active point @p a has no spring left, and its two sides overlap by more
-        than they can have closed on the largest @p way of a step: its face has
-        turned after it has slid. */
-    bool overlaps(const LeapfrogChains<dim> &chains, std::size_t a,
-                  double way) const;
-    /** Active point @p a softens, and has slid so far that its two sides touch
-        other places than each other. */
-    bool has_slid_off(const LeapfrogChains<dim> &chains, std::size_t a) const;
+    /** How far active point @p a, which softens or is broken, has left its
+        other side: its two sides touch other places than each other (slid), or
+        overlap by more than they can have closed on the largest @p way of a
+        step, since its face has turned after it has slid. */
+    struct Left {
+      bool slid = false, overlaps = false;
+    };
+    Left left(const LeapfrogChains<dim> &chains, std::size_t a,
+              double way) const;
 
     /**
      * What may touch in a step of length @p h from @p time, groups at its

@@ -235,8 +235,9 @@ namespace nsfd
                : kind == PointKind::free     ? 2
                : kind == PointKind::cohesive ? 1
                                              : 0;
-        n += chains.is_left(a) || contacts_->has_slid_off(chains, a);
-        n += chains.is_left(a) || contacts_->overlaps(chains, a, way_);
+        const auto left = contacts_->left(chains, a, way_);
+        n += chains.is_left(a) || left.slid;
+        n += chains.is_left(a) || left.overlaps;
       }
       return n + chains.size();
     };

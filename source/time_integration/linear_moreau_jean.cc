@@ -199,7 +199,7 @@ namespace nsfd
     next.step = old.step + 1;
     next.time = old.time + h;
     next.last_step = h;
-    next.kept_step = this->delassus_.kept_step();
+    next.kept_step = this->delassus_.terms().kept_step;
     this->free_motion_.finish(next.impulse, old, next);
     const std::size_t n = next.velocity.size();
     next.displacement.resize(n);

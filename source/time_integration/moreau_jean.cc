@@ -23,7 +23,7 @@ namespace nsfd
         check_(input, [this](const std::size_t i) { return describe(i); })
   {
     if (input.has_viscous_bodies())
-      delassus.set_viscous_theta(input.time.theta);
+      delassus.set_terms({input.time.theta, delassus.terms().kept_step});
   }
 
   template <int dim>

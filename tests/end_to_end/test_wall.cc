@@ -69,6 +69,14 @@ namespace end_to_end::test_wall
                         Seed{30372, "large explicit elastic contact"},
                         Seed{30324, "small symplectic breakable contact"},
                         Seed{30491, "small moreau-jean elastic contact"},
+                        // steps that change their length
+                        Seed{30075, "small symplectic mixed contact"},
+                        // joints that hold each other
+                        Seed{30306, "small moreau-jean mixed contact"},
+                        // more than the tolerance of a step
+                        Seed{30384, "small arkode elastic alone"},
+                        // broken points of faces that hold elsewhere
+                        Seed{30342, "large explicit breakable alone"},
                         // driven by half a body, speeds of the softest one
                         Seed{30221, "large explicit elastic alone"},
                         Seed{30124, "large explicit breakable contact"},

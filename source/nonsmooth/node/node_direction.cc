@@ -47,6 +47,46 @@ namespace nsfd
         });
       });
     }
+
+    /** Of clusters of nodes that contacts join, those of one place next to each
+        other: around one node everything is near. */
+    template <typename Point>
+    void order_unknowns(const std::vector<Point> &points,
+                        const std::size_t n_points, const int dim,
+                        const int n_unknowns, std::vector<int> &unknown)
+    {
+      constexpr int few = 64;
+      if (n_unknowns <= few)
+        return;
+      std::vector<std::vector<int>> neighbors(std::size_t(n_unknowns / dim));
+      std::vector<int> here;
+      for (std::size_t k = 0; k < n_points; ++k) {
+        const Point &point = points[k];
+        if (!point.carries)
+          continue;
+        here.clear();
+        const auto add = [&](const int g, const auto &) {
+          here.push_back(unknown[std::size_t(g)] / dim);
+        };
+        for_ends(point.groups, point.ends, add);
+        for_matrices(point.ends, add);
+        for (const int i : here)
+          for (const int j : here)
+            if (i != j)
+              neighbors[std::size_t(i)].push_back(j);
+      }
+      for (auto &list : neighbors) {
+        std::sort(list.begin(), list.end());
+        list.erase(std::unique(list.begin(), list.end()), list.end());
+      }
+      const std::vector<int> order = narrow_order(neighbors);
+      std::vector<int> place(order.size());
+      for (std::size_t k = 0; k < order.size(); ++k)
+        place[std::size_t(order[k])] = int(k);
+      for (int &first : unknown)
+        if (first >= 0)
+          first = place[std::size_t(first / dim)] * dim;
+    }
   } // namespace
 
   template <int dim>
@@ -72,48 +112,11 @@ namespace nsfd
       for_ends(point.groups, point.ends, number);
       for_matrices(point.ends, number);
     }
-    order_unknowns();
-  }
-
-  /** Of clusters of nodes that contacts join, those of one place next to each
-      other: around one node everything is near. */
-  template <int dim>
-  void NodeSystem<dim>::order_unknowns()
-  {
-    constexpr int few = 64;
-    const bool joined =
+    const auto joined =
         std::any_of(points_.begin(), points_.begin() + long(n_),
                     [](const Point &point) { return point.ends != nullptr; });
-    if (n_unknowns_ <= few || !joined)
-      return;
-    std::vector<std::vector<int>> neighbors(std::size_t(n_unknowns_ / dim));
-    std::vector<int> here;
-    for (std::size_t k = 0; k < n_; ++k) {
-      const Point &point = points_[k];
-      if (!point.carries)
-        continue;
-      here.clear();
-      const auto add = [&](const int g, const auto &) {
-        here.push_back(unknown_[g] / dim);
-      };
-      for_ends(point.groups, point.ends, add);
-      for_matrices(point.ends, add);
-      for (const int i : here)
-        for (const int j : here)
-          if (i != j)
-            neighbors[std::size_t(i)].push_back(j);
-    }
-    for (auto &list : neighbors) {
-      std::sort(list.begin(), list.end());
-      list.erase(std::unique(list.begin(), list.end()), list.end());
-    }
-    const std::vector<int> order = narrow_order(neighbors);
-    std::vector<int> place(order.size());
-    for (std::size_t k = 0; k < order.size(); ++k)
-      place[std::size_t(order[k])] = int(k);
-    for (int &first : unknown_)
-      if (first >= 0)
-        first = place[std::size_t(first / dim)] * dim;
+    if (joined)
+      order_unknowns(points_, n_, dim, n_unknowns_, unknown_);
   }
 
   template <int dim>

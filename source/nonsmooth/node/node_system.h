@@ -133,7 +133,6 @@ namespace nsfd
               std::vector<Vector> &velocity) const;
     void answer(Point &point, bool near_first = true) const;
     bool invert_slopes(Point &point, double soft, double &stiffest) const;
-    void order_unknowns();
     void assemble();
     double correct(double soft);
     bool held_by_round_off(const Point &point) const;

@@ -367,7 +367,7 @@ namespace nsfd
                     work_.data());
     for (std::size_t k = 0; k < x.size(); ++k)
       y[k] += shares_.stiffness * work_[k];
-    if (delassus_.viscous_theta() == 0.)
+    if (delassus_.terms().viscous_theta == 0.)
       return;
     delassus_.apply(DelassusOperator<dim>::Operator::damping, x.data(),
                     work_.data());

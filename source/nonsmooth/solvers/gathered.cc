@@ -127,8 +127,8 @@ namespace nsfd
   Gathered<dim>::Gathered(const DelassusOperator<dim> &delassus)
       : communicator_(delassus.communicator()),
         n_points_(delassus.points().n_points),
-        n_owned_(delassus.points().n_owned),
-        viscous_theta_(delassus.viscous_theta()), alone_(MPI_COMM_SELF)
+        n_owned_(delassus.points().n_owned), terms_(delassus.terms()),
+        alone_(MPI_COMM_SELF)
   {
     const auto mine = pack<dim>(delassus.bodies(), delassus.points());
     const Counts bytes(communicator_, mine.size());
@@ -144,7 +144,7 @@ namespace nsfd
                             all.begin() + bytes.first[r + 1]);
     build(packages);
     delassus_ = make_local_delassus<dim>(alone_, bodies_, points_);
-    delassus_->set_viscous_theta(viscous_theta_);
+    delassus_->set_terms(terms_);
   }
 
   template <int dim>

@@ -39,7 +39,7 @@ namespace nsfd
 
     const Communicator &communicator_;
     std::size_t n_points_, n_owned_;
-    double viscous_theta_;
+    StepTerms terms_;
     std::vector<std::vector<unsigned int>> points_of_; ///< per rank: into all
     Communicator alone_;
     Bodies bodies_;
