@@ -323,8 +323,9 @@ namespace nsfd
   {
     constexpr double least_mass = 0.1;
     const unsigned int n = n_dofs();
+    // what there is of the other one is definite even where a point has none
     if (!add_symmetric(motion, false, K))
-      return false;
+      return add_symmetric(motion, true, K);
     std::vector<double> A(std::size_t(n) * n);
     const double factor = motion.time_step * motion.time_step * motion.theta;
     for (std::size_t i = 0; i < A.size(); ++i)
