@@ -11,6 +11,99 @@
 
 namespace nsfd
 {
+  namespace
+  {
+    /**
+     * Diagonal blocks of W in the local frames: of each point by itself, or of
+     * the @p whole of its face.
+     */
+    template <int dim>
+    std::vector<double> diagonal_blocks(const DelassusOperator<dim> &delassus,
+                                        const bool whole)
+    {
+      const auto &points = delassus.points();
+      const auto &bodies = delassus.bodies();
+      const auto &blocks = delassus.class_blocks();
+      const auto &communicator = delassus.communicator();
+      // Cartesian blocks of both sides, row by row of a point of the face, so
+      // that shared faces can be completed by the point exchange.
+      std::size_t width = 1;
+      for (const auto &face : points.faces)
+        width = std::max<std::size_t>(width, whole ? face.count : 1);
+      width = std::size_t(communicator.max(
+          static_cast<double>(width))); // same stride everywhere
+      const std::size_t row = width * dim, stride = dim * row;
+      const auto place = point_places(bodies, points.n_points);
+      const auto first_of = [&](const unsigned int p) { return whole ? 0 : p; };
+      const auto count_of = [&](const auto &face) {
+        return whole ? face.count : 1u;
+      };
+      const auto fill = [&](const auto &face, const unsigned int side,
+                            double *out) {
+        for (unsigned int p = 0; p < face.count; ++p) {
+          const PointPlace mine = place[side][face.first + p];
+          if (mine.body < 0)
+            continue;
+          const Block &W = blocks[bodies.class_of[mine.body]].delassus;
+          for (unsigned int q = 0; q < count_of(face); ++q) {
+            const PointPlace other = place[side][face.first + first_of(p) + q];
+            for (unsigned int c = 0; c < dim; ++c)
+              for (unsigned int d = 0; d < dim; ++d)
+                out[p * stride + c * row + q * dim + d] =
+                    W(mine.slot * dim + c, other.slot * dim + d);
+          }
+        }
+      };
+      // on one rank a face at a time: all of them take twice what is kept
+      const bool alone = communicator.size() == 1;
+      std::size_t longest = 0, size = 0;
+      for (const auto &face : points.faces) {
+        longest = std::max<std::size_t>(longest, face.count);
+        size += std::size_t(face.count) * dim * count_of(face) * dim;
+      }
+      std::array<std::vector<double>, 2> sides;
+      for (auto &side : sides)
+        side.assign((alone ? longest : points.n_points) * stride, 0.);
+      if (!alone) {
+        for (const auto &face : points.faces)
+          for (unsigned int side = 0; side < 2; ++side)
+            fill(face, side, sides[side].data() + face.first * stride);
+        delassus.exchange({{sides[0].data(), sides[1].data()}},
+                          unsigned(stride));
+      }
+
+      std::vector<double> result(size, 0.);
+      double *block = result.data();
+      for (const auto &face : points.faces) {
+        const unsigned int n = count_of(face) * dim;
+        for (unsigned int side = 0; side < 2 && alone; ++side) {
+          std::fill(sides[side].begin(), sides[side].end(), 0.);
+          fill(face, side, sides[side].data());
+        }
+        const std::size_t first = alone ? 0 : face.first;
+        for (unsigned int p = 0; p < face.count; ++p)
+          for (unsigned int q = 0; q < count_of(face); ++q) {
+            const double *Qp = points.axes(face.first + p);
+            const double *Qq = points.axes(face.first + first_of(p) + q);
+            for (unsigned int i = 0; i < dim; ++i)
+              for (unsigned int j = 0; j < dim; ++j) {
+                double value = 0.;
+                for (unsigned int c = 0; c < dim; ++c)
+                  for (unsigned int d = 0; d < dim; ++d) {
+                    const std::size_t k =
+                        (first + p) * stride + c * row + q * dim + d;
+                    value += Qp[i * dim + c] * (sides[1][k] + sides[0][k]) *
+                             Qq[j * dim + d];
+                  }
+                block[(p * dim + i) * n + q * dim + j] = value;
+              }
+          }
+        block += std::size_t(face.count) * dim * n;
+      }
+      return result;
+    }
+  } // namespace
+
   template <int dim>
   DelassusOperator<dim>::DelassusOperator(const Communicator &communicator,
                                           const Bodies &bodies,
@@ -50,7 +143,22 @@ namespace nsfd
       blocks_[k].velocity_change =
           product(blocks_[k].inverse, this->trace_transposed(k));
     }
-    set_diagonal_blocks();
+    if (!keeps_face_blocks_) {
+      point_blocks_ = diagonal_blocks(*this, false);
+      return;
+    }
+    face_blocks_ = diagonal_blocks(*this, true);
+    face_offset_.assign(1, 0);
+    point_blocks_.clear();
+    for (const auto &face : points_.faces) {
+      const std::size_t n = std::size_t(face.count) * dim;
+      const double *W = face_blocks_.data() + face_offset_.back();
+      for (std::size_t p = 0; p < face.count; ++p)
+        for (std::size_t r = p * dim; r < (p + 1) * dim; ++r)
+          point_blocks_.insert(point_blocks_.end(), W + r * n + p * dim,
+                               W + r * n + (p + 1) * dim);
+      face_offset_.push_back(face_offset_.back() + n * n);
+    }
   }
 
   template <int dim>
@@ -116,112 +224,6 @@ namespace nsfd
                                              : blocks_[k].inverse;
         },
         dof_gather(bodies_, x), dof_scatter<false>(bodies_, y));
-  }
-
-  template <int dim>
-  void DelassusOperator<dim>::set_diagonal_blocks()
-  {
-    if (!keeps_face_blocks_) {
-      point_blocks_ = diagonal_blocks(false);
-      return;
-    }
-    face_blocks_ = diagonal_blocks(true);
-    face_offset_.assign(1, 0);
-    point_blocks_.clear();
-    for (const auto &face : points_.faces) {
-      const std::size_t n = std::size_t(face.count) * dim;
-      const double *W = face_blocks_.data() + face_offset_.back();
-      for (std::size_t p = 0; p < face.count; ++p)
-        for (std::size_t r = p * dim; r < (p + 1) * dim; ++r)
-          point_blocks_.insert(point_blocks_.end(), W + r * n + p * dim,
-                               W + r * n + (p + 1) * dim);
-      face_offset_.push_back(face_offset_.back() + n * n);
-    }
-  }
-
-  /**
-   * Diagonal blocks of W in the local frames: of each point by itself, or of
-   * the @p whole of its face.
-   */
-  template <int dim>
-  std::vector<double>
-  DelassusOperator<dim>::diagonal_blocks(const bool whole) const
-  {
-    // Cartesian blocks of both sides, row by row of a point of the face, so
-    // that shared faces can be completed by the point exchange.
-    std::size_t width = 1;
-    for (const auto &face : points_.faces)
-      width = std::max<std::size_t>(width, whole ? face.count : 1);
-    width = std::size_t(communicator_.max(
-        static_cast<double>(width))); // same stride everywhere
-    const std::size_t row = width * dim, stride = dim * row;
-    const auto place = point_places(bodies_, points_.n_points);
-    const auto first_of = [&](const unsigned int p) { return whole ? 0 : p; };
-    const auto count_of = [&](const auto &face) {
-      return whole ? face.count : 1u;
-    };
-    const auto fill = [&](const auto &face, const unsigned int side,
-                          double *out) {
-      for (unsigned int p = 0; p < face.count; ++p) {
-        const PointPlace mine = place[side][face.first + p];
-        if (mine.body < 0)
-          continue;
-        const Block &W = blocks_[bodies_.class_of[mine.body]].delassus;
-        for (unsigned int q = 0; q < count_of(face); ++q) {
-          const PointPlace other = place[side][face.first + first_of(p) + q];
-          for (unsigned int c = 0; c < dim; ++c)
-            for (unsigned int d = 0; d < dim; ++d)
-              out[p * stride + c * row + q * dim + d] =
-                  W(mine.slot * dim + c, other.slot * dim + d);
-        }
-      }
-    };
-    // on one rank a face at a time: all of them take twice what is kept
-    const bool alone = communicator_.size() == 1;
-    std::size_t longest = 0, size = 0;
-    for (const auto &face : points_.faces) {
-      longest = std::max<std::size_t>(longest, face.count);
-      size += std::size_t(face.count) * dim * count_of(face) * dim;
-    }
-    std::array<std::vector<double>, 2> sides;
-    for (auto &side : sides)
-      side.assign((alone ? longest : points_.n_points) * stride, 0.);
-    if (!alone) {
-      for (const auto &face : points_.faces)
-        for (unsigned int side = 0; side < 2; ++side)
-          fill(face, side, sides[side].data() + face.first * stride);
-      this->exchange({{sides[0].data(), sides[1].data()}}, unsigned(stride));
-    }
-
-    std::vector<double> result(size, 0.);
-    double *block = result.data();
-    for (const auto &face : points_.faces) {
-      const unsigned int n = count_of(face) * dim;
-      for (unsigned int side = 0; side < 2 && alone; ++side) {
-        std::fill(sides[side].begin(), sides[side].end(), 0.);
-        fill(face, side, sides[side].data());
-      }
-      const std::size_t first = alone ? 0 : face.first;
-      for (unsigned int p = 0; p < face.count; ++p)
-        for (unsigned int q = 0; q < count_of(face); ++q) {
-          const double *Qp = points_.axes(face.first + p);
-          const double *Qq = points_.axes(face.first + first_of(p) + q);
-          for (unsigned int i = 0; i < dim; ++i)
-            for (unsigned int j = 0; j < dim; ++j) {
-              double value = 0.;
-              for (unsigned int c = 0; c < dim; ++c)
-                for (unsigned int d = 0; d < dim; ++d) {
-                  const std::size_t k =
-                      (first + p) * stride + c * row + q * dim + d;
-                  value += Qp[i * dim + c] * (sides[1][k] + sides[0][k]) *
-                           Qq[j * dim + d];
-                }
-              block[(p * dim + i) * n + q * dim + j] = value;
-            }
-        }
-      block += std::size_t(face.count) * dim * n;
-    }
-    return result;
   }
 
   template class DelassusOperator<2>;

@@ -197,9 +197,6 @@ namespace nsfd
     const std::vector<ClassBlocks> &class_blocks() const { return blocks_; }
 
   protected:
-    void set_diagonal_blocks();
-    std::vector<double> diagonal_blocks(bool whole) const;
-
     using FaceTraces<dim>::communicator_;
     using FaceTraces<dim>::bodies_;
     using FaceTraces<dim>::points_;

@@ -52,12 +52,6 @@ namespace nsfd
 
     /** M_hat and @p springs, the blocks T, row by row, or null. Collective. */
     const SparseRows &assemble(const double *springs);
-    /** Its values are no longer needed. */
-    void forget_values()
-    {
-      matrix_.value = std::vector<double>();
-      joint_.values = std::vector<double>();
-    }
     /**
      * y = P^T A P x of own values of the space, A mass, stiffness or damping.
      * Collective.

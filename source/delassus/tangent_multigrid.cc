@@ -71,7 +71,9 @@ namespace nsfd
     limited_ = springs;
     limit(matrix, limited_);
     coarser_.set_matrix(matrix.assemble(limited_.data()));
-    matrix.forget_values(); // before the hierarchy takes its room
+    // before the hierarchy takes its room
+    matrix.matrix_.value = std::vector<double>();
+    matrix.joint_.values = std::vector<double>();
     coarser_.build(matrix.space_->modes, matrix.size_, Multigrid::Finest::left);
     matrix_ = &matrix;
     invert_diagonal(matrix);

@@ -48,6 +48,21 @@ namespace nsfd
         for (std::size_t k = i * dim; k < (i + 1) * dim; ++k)
           sum[k] += length * dx[k];
     }
+
+    /** Zeros in @p values, @p size per point, of which @p points may have had
+        others. */
+    void clear(const std::vector<unsigned int> &points,
+               const std::size_t n_points, const std::size_t size,
+               std::vector<double> &values)
+    {
+      if (values.size() != n_points * size) {
+        values.assign(n_points * size, 0.);
+        release_pages_of_zeros(values);
+        return;
+      }
+      for (const std::size_t i : points)
+        std::fill_n(&values[i * size], size, 0.);
+    }
   } // namespace
 
   /** A step from rest does not ask for all digits of each solution. */
@@ -63,20 +78,6 @@ namespace nsfd
   {
     // momenta of equilibria do not add up over steps
     return (may_be_rough(work) ? of_equilibria : of_momenta) * work.tolerance;
-  }
-
-  /** Zeros in @p values, @p size per point; points_ have had others. */
-  template <int dim>
-  void AugmentedLagrangian<dim>::clear(Vector &values, const std::size_t size,
-                                       const std::size_t n_points) const
-  {
-    if (values.size() != n_points * size) {
-      values.assign(n_points * size, 0.);
-      release_pages_of_zeros(values);
-      return;
-    }
-    for (const std::size_t i : points_)
-      std::fill_n(&values[i * size], size, 0.);
   }
 
   template <int dim>
@@ -95,8 +96,8 @@ namespace nsfd
     velocity_.assign(n, 0.);
     dU_.assign(n, 0.);
     for (Vector *vector : {&compliance_, &dP_, &rest_, &right_side_, &defect_})
-      clear(*vector, dim, problem.n_points);
-    clear(tangents_, dim * dim, problem.n_points);
+      clear(points_, problem.n_points, dim, *vector);
+    clear(points_, problem.n_points, dim * dim, tangents_);
     points_ = problem.acting;
     rigid_ = of_nodes;
     if (!work.from_rest) {
@@ -161,19 +162,6 @@ namespace nsfd
     }
   }
 
-  /** S - P of a support that is held. */
-  template <int dim>
-  double AugmentedLagrangian<dim>::left_of_support(const Work &work,
-                                                   const std::size_t i,
-                                                   const unsigned int c) const
-  {
-    const std::size_t k = i * dim + c;
-    return work.problem.mask[i] & (1u << c)
-               ? (work.problem.given_velocity[k] - velocity_[k]) /
-                     compliance_[k]
-               : 0.;
-  }
-
   /** |P - S|_R, and |P - P_0|_R, over |P|_R. */
   template <int dim>
   auto AugmentedLagrangian<dim>::errors(const Work &work) -> Errors
@@ -186,8 +174,10 @@ namespace nsfd
         // what its spring makes of the last bit of U is no defect of a support
         const double R = work.evaluation.majorant(i, c),
                      P = impulse_[i * dim + c],
-                     defect = work.holds(i) ? left_of_support(work, i, c)
-                                            : P - solutions_[i].impulse[c],
+                     defect =
+                         work.holds(i)
+                             ? left_of_support(work.problem, velocity_, R, i, c)
+                             : P - solutions_[i].impulse[c],
                      shift = P - rest_[i * dim + c];
         terms[a] += R * P * P;
         terms[n + a] += R * defect * defect;
@@ -264,21 +254,13 @@ namespace nsfd
             solutions_[i].impulse[c] - impulse_[i * dim + c];
   }
 
-  /** Before supports and springs that are left out go into the right side. */
-  template <int dim>
-  void AugmentedLagrangian<dim>::keep_defect(const Work &work)
-  {
-    for (const std::size_t i : work.problem.acting)
-      std::copy_n(&right_side_[i * dim], dim, &defect_[i * dim]);
-  }
-
   /** Downhill; false where there is no such system. Collective. */
   template <int dim>
   bool AugmentedLagrangian<dim>::find_direction(const Work &work)
   {
     ++work.report.newton;
     set_right_side(work);
-    keep_defect(work);
+    copy_of_points<dim>(work.problem.acting, right_side_, defect_);
     const auto solved = [&](const bool symmetric) {
       const double tolerance = work.from_rest ? 0. : enough(work),
                    share = work.from_rest ? 0. : of_directions;
@@ -306,8 +288,7 @@ namespace nsfd
     double length = 1., low = 0., high = 1.;
     const auto try_length = [&] {
       moved_.resize(velocity_.size());
-      for (const std::size_t i : work.problem.acting)
-        std::copy_n(&velocity_[i * dim], dim, &moved_[i * dim]);
+      copy_of_points<dim>(work.problem.acting, velocity_, moved_);
       add<dim>(work.problem.acting, length, dU_, moved_);
       answer(work, moved_);
     };

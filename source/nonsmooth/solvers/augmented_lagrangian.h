@@ -87,21 +87,17 @@ namespace nsfd
 
     bool may_be_rough(const Work &work) const;
     double enough(const Work &work) const;
-    void clear(Vector &values, std::size_t size, std::size_t n_points) const;
     void begin(const Work &work, const Vector &impulse);
     void polish(const Work &work);
     Iterate iterate(const Work &work) const;
     void return_to(const Work &work, const Iterate &iterate);
     void soften(const Work &work, double share);
     void answer(const Work &work, const Vector &U);
-    double left_of_support(const Work &work, std::size_t i,
-                           unsigned int c) const;
     Errors errors(const Work &work);
     bool differentiate(const Work &work);
     void symmetrise(const Work &work, bool convex);
     double slope(const Work &work, double length) const;
     void set_right_side(const Work &work);
-    void keep_defect(const Work &work);
     bool rests(const Work &work, std::size_t i) const;
     void keep_tangents_at_rest(const Work &work);
     void remove_springs(const Work &work);

@@ -116,7 +116,7 @@ namespace nsfd
                                            const double share)
   {
     ++work.report.newton;
-    keep_defect(work);
+    copy_of_points<dim>(work.problem.acting, right_side_, defect_);
     const bool symmetric = differentiate(work);
     remove_springs(work);
     if (work.from_rest)

@@ -35,4 +35,26 @@ namespace nsfd
       }
     }
   }
+
+  /** Of such a support at the velocities @p U: what is left of the given one,
+      over R, N s. */
+  template <int dim>
+  double left_of_support(const OneStepProblem<dim> &problem,
+                         const std::vector<double> &U, const double R,
+                         const std::size_t point, const unsigned int c)
+  {
+    const std::size_t k = point * dim + c;
+    return problem.mask[point] & (1u << c)
+               ? (problem.given_velocity[k] - U[k]) / R
+               : 0.;
+  }
+
+  /** Of these points @p to, which has room for all. */
+  template <int dim>
+  void copy_of_points(const std::vector<unsigned int> &points,
+                      const std::vector<double> &from, std::vector<double> &to)
+  {
+    for (const std::size_t i : points)
+      std::copy_n(&from[i * dim], dim, &to[i * dim]);
+  }
 } // namespace nsfd
