@@ -17,7 +17,7 @@ namespace nsfd
 
   namespace
   {
-    /** Interfaces, obstacles, the support, contacts: see point_constants(). */
+    /** Interfaces, obstacles, the support, contacts: see constant_data(). */
     unsigned int interaction_of_contact(const SceneInput &input,
                                         const unsigned int block)
     {

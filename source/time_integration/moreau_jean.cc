@@ -13,7 +13,7 @@ namespace nsfd
                               const Discretization<dim> &discretization,
                               DelassusOperator<dim> &delassus)
       : input_(input), discretization_(discretization), delassus_(delassus),
-        problem_(point_constants(input, discretization)),
+        problem_(constant_data(input, discretization)),
         uniqueness_(std::make_unique<UniquenessBound<dim>>(
             input, discretization.origins(), delassus)),
         balance_(std::make_unique<EnergyBalance<dim>>(input, discretization,

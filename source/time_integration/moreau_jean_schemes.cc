@@ -231,8 +231,9 @@ namespace nsfd
                                       {0., time.end, true, false},
                                       "s; Moreau-Jean steps after it");
       const std::string at_jump = reader.choice(
-          "at solution jump", "stop", {"stop", "dynamic", "relax"},
-          "where no equilibrium continues the last: stop, dynamic or relax");
+          "at solution jump", "relax", {"relax", "stop", "dynamic"},
+          "where no equilibrium continues the last: take the next one that "
+          "energy suffices for (relax), stop, or follow it in time (dynamic)");
       statics.at_jump = at_jump == "dynamic" ? SolutionJump::dynamic
                         : at_jump == "relax" ? SolutionJump::relax
                                              : SolutionJump::stop;

@@ -35,7 +35,7 @@ namespace nsfd
                               NonsmoothSolver<dim> &solver,
                               JoinedDelassus<dim> *const bonded)
       : input_(input), discretization_(discretization), delassus_(delassus),
-        solver_(solver), problem_(point_constants(input, discretization)),
+        solver_(solver), problem_(constant_data(input, discretization)),
         free_motion_(input, discretization, delassus),
         step_problem_(input, discretization, delassus, counters_),
         balance_(delassus, free_motion_),

@@ -48,13 +48,12 @@ namespace nsfd
         communicator_(delassus.communicator()), motion_(input, discretization),
         free_(free_bodies(input, discretization, delassus.communicator(),
                           bonded, start)),
-        problem_(point_constants(input, discretization)), kind_(start.kind),
+        problem_(constant_data(input, discretization)), kind_(start.kind),
         n_(discretization.bodies().n_dofs()),
         n_rows_(discretization.points().n_points * dim),
         joined_(*free_, discretization.points().n_owned),
         shifted_(delassus, discretization.points().n_owned)
   {
-    add_step_data(problem_);
     free_->reinit(0., 1.);
     if (input.has_bonded_faces())
       bulk_ = std::make_unique<BulkTraction<dim>>(delassus);

@@ -4,6 +4,7 @@
 #include "driven_motion.h"
 
 #include "cohesive_laws/friction_weight.h"
+#include "core/pages_of_zeros.h"
 #include "discretization/point_factors.h"
 #include "nsfd/scene/scene_input.h"
 #include "state/state.h"
@@ -257,12 +258,22 @@ namespace nsfd
   }
 
   template <int dim>
-  void add_step_data(OneStepProblem<dim> &problem)
+  OneStepProblem<dim> constant_data(const SceneInput &input,
+                                    const Discretization<dim> &discretization)
   {
-    if (problem.kind.size() == problem.n_points)
-      return;
-    auto constants = std::move(problem);
+    auto constants = point_constants(input, discretization);
+    OneStepProblem<dim> problem;
     resize(problem, constants.n_points);
+    // in a run of equilibria those of its motions are never filled
+    for (const auto member :
+         {&OneStepProblem<dim>::free_velocity,
+          &OneStepProblem<dim>::given_velocity, &OneStepProblem<dim>::jump_old,
+          &OneStepProblem<dim>::jump_free, &OneStepProblem<dim>::sliding_offset,
+          &OneStepProblem<dim>::opening_max,
+          &OneStepProblem<dim>::compression_stiffness,
+          &OneStepProblem<dim>::target, &OneStepProblem<dim>::majorant_normal,
+          &OneStepProblem<dim>::majorant_tangential})
+      release_pages_of_zeros(problem.*member);
     problem.n_owned = constants.n_owned;
     problem.theta = constants.theta;
     problem.rule = constants.rule;
@@ -273,6 +284,7 @@ namespace nsfd
           &OneStepProblem<dim>::opening_factor, &OneStepProblem<dim>::viscosity,
           &OneStepProblem<dim>::dilatancy, &OneStepProblem<dim>::lift_left})
       (problem.*member).swap(constants.*member);
+    return problem;
   }
 
   template <int dim>
@@ -352,7 +364,6 @@ namespace nsfd
                 const DrivenMotion<dim> &motion, const State &old,
                 const double h, OneStepProblem<dim> &problem)
   {
-    add_step_data(problem);
     problem.time_step = h;
     problem.kind = old.kind;
     problem.opening_max = old.opening_max;
@@ -376,8 +387,10 @@ namespace nsfd
 
   template double intact_stiffness(const OneStepProblem<2> &, std::size_t);
   template double intact_stiffness(const OneStepProblem<3> &, std::size_t);
-  template void add_step_data(OneStepProblem<2> &);
-  template void add_step_data(OneStepProblem<3> &);
+  template OneStepProblem<2> constant_data(const SceneInput &,
+                                           const Discretization<2> &);
+  template OneStepProblem<3> constant_data(const SceneInput &,
+                                           const Discretization<3> &);
   template OneStepProblem<2> point_constants(const SceneInput &,
                                              const Discretization<2> &);
   template OneStepProblem<3> point_constants(const SceneInput &,

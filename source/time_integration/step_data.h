@@ -16,16 +16,16 @@ namespace nsfd
   double intact_stiffness(const OneStepProblem<dim> &problem,
                           std::size_t point);
 
-  /** What points have by themselves, which no step changes; the other lists are
-      empty. */
+  /** The part of the data that no step changes. */
+  template <int dim>
+  OneStepProblem<dim> constant_data(const SceneInput &input,
+                                    const Discretization<dim> &discretization);
+
+  /** Of it what points have by themselves; the other lists are empty. */
   template <int dim>
   OneStepProblem<dim>
   point_constants(const SceneInput &input,
                   const Discretization<dim> &discretization);
-
-  /** To these constants the lists of a step, if they are not there. */
-  template <int dim>
-  void add_step_data(OneStepProblem<dim> &problem);
 
   /**
    * The data of the step from @p old over @p time_step, all but the free

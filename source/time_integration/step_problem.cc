@@ -113,8 +113,8 @@ namespace nsfd
                  report);
     if (report.converged &&
         gives_by_contact(problem, control, old, impulse, evaluation))
-      solve_closer(solver, problem, control, energy_scale, old, impulse,
-                   evaluation, report);
+      solve_closer(solver, problem, control, energy_scale, impulse, evaluation,
+                   report);
     if (report.converged && problem.free_motion == FreeVelocity::known &&
         gives_by_rows(problem, control, energy_scale, impulse, evaluation))
       hold_rows(problem, control, energy_scale, impulse, evaluation, report);
@@ -206,24 +206,23 @@ namespace nsfd
   }
 
   template <int dim>
-  void StepProblem<dim>::solve_closer(
-      NonsmoothSolver<dim> &solver, const OneStepProblem<dim> &problem,
-      SolverControl control, const double energy_scale, const State &old,
-      std::vector<double> &impulse, LawEvaluation<dim> &evaluation,
-      SolverReport &report)
+  void StepProblem<dim>::solve_closer(NonsmoothSolver<dim> &solver,
+                                      const OneStepProblem<dim> &problem,
+                                      SolverControl control,
+                                      const double energy_scale,
+                                      std::vector<double> &impulse,
+                                      LawEvaluation<dim> &evaluation,
+                                      SolverReport &report)
   {
     if (problem.free_motion == FreeVelocity::known) {
       settle(problem, control, energy_scale, impulse, evaluation, report);
-      if (!gives_by_contact(problem, control, old, impulse, evaluation))
-        return;
+      return;
     }
-    // only the solver itself knows the motion of the nodes, or other ways than
-    // that of Newton, which has led here
+    // only the solver itself knows the motion of the nodes
     const std::vector<double> before(impulse);
     const double error = evaluation.error;
     control.tolerance = std::max(1e-14, 1e-3 * control.tolerance);
-    if (problem.free_motion != FreeVelocity::known)
-      control.maximum_iterations = 10;
+    control.maximum_iterations = 10;
     report.add_work(solver.solve(problem, delassus_, energy_scale, control,
                                  impulse, evaluation));
     if (!(evaluation.error < error)) {

@@ -79,8 +79,7 @@ namespace nsfd
                           const LawEvaluation<dim> &evaluation) const;
     void solve_closer(NonsmoothSolver<dim> &solver,
                       const OneStepProblem<dim> &problem, SolverControl control,
-                      double energy_scale, const State &old,
-                      std::vector<double> &impulse,
+                      double energy_scale, std::vector<double> &impulse,
                       LawEvaluation<dim> &evaluation, SolverReport &report);
     bool rests(double still, const OneStepProblem<dim> &problem,
                double energy_scale, const State &old,

@@ -14,7 +14,11 @@ namespace nsfd
 {
   void TimeScheme::read_steps(SectionReader &reader, SceneInput &scene) const
   {
-    read_step(reader, "step", scene.time);
+    // half a crossing is beyond the stable step of many meshes
+    if (traits().explicit_forces)
+      read_step(reader, "step", scene.time, "auto");
+    else
+      read_step(reader, "step", scene.time);
     check_step(reader, scene);
   }
 

@@ -79,9 +79,9 @@ namespace end_to_end::test_restart_refused
     overwrite(newest(stored_.directory), damaged);
     expect_refused("checksum");
     std::string newer = good;
-    newer.replace(newer.find("\nformat ") + 8, 1, "9");
+    newer.replace(newer.find("\nformat ") + 8, 1, "10");
     overwrite(newest(stored_.directory), newer);
-    expect_refused("in format 9");
+    expect_refused("in format 10");
     fs::remove(newest(stored_.directory));
     expect_refused("no whole checkpoint");
     fs::remove_all(stored_.directory);
