@@ -72,10 +72,14 @@ namespace nsfd
                           unsigned(stride));
       }
 
-      std::vector<double> result(size, 0.);
-      double *block = result.data();
+      std::vector<double> result(whole ? size : points.n_points * dim * dim,
+                                 0.);
+      double *next = result.data();
       for (const auto &face : points.faces) {
         const unsigned int n = count_of(face) * dim;
+        // points of a step need not be in the order of the faces
+        double *const block =
+            whole ? next : result.data() + std::size_t(face.first) * dim * dim;
         for (unsigned int side = 0; side < 2 && alone; ++side) {
           std::fill(sides[side].begin(), sides[side].end(), 0.);
           fill(face, side, sides[side].data());
@@ -98,7 +102,7 @@ namespace nsfd
                 block[(p * dim + i) * n + q * dim + j] = value;
               }
           }
-        block += std::size_t(face.count) * dim * n;
+        next += std::size_t(face.count) * dim * n;
       }
       return result;
     }
@@ -149,14 +153,14 @@ namespace nsfd
     }
     face_blocks_ = diagonal_blocks(*this, true);
     face_offset_.assign(1, 0);
-    point_blocks_.clear();
+    point_blocks_.assign(points_.n_points * dim * dim, 0.);
     for (const auto &face : points_.faces) {
       const std::size_t n = std::size_t(face.count) * dim;
       const double *W = face_blocks_.data() + face_offset_.back();
       for (std::size_t p = 0; p < face.count; ++p)
-        for (std::size_t r = p * dim; r < (p + 1) * dim; ++r)
-          point_blocks_.insert(point_blocks_.end(), W + r * n + p * dim,
-                               W + r * n + (p + 1) * dim);
+        for (std::size_t r = 0; r < dim; ++r)
+          std::copy_n(W + (p * dim + r) * n + p * dim, dim,
+                      &point_blocks_[((face.first + p) * dim + r) * dim]);
       face_offset_.push_back(face_offset_.back() + n * n);
     }
   }

@@ -279,7 +279,8 @@ namespace nsfd
       }
       const bool comes_back = std::abs(error - before[1]) < 1e-2 * error;
       before = {error, before[0]};
-      const bool leads_away = least < near && error > away * least;
+      const bool leads_away =
+          work.from_rest && least < near && error > away * least;
       if (idle > most_idle || comes_back || leads_away ||
           !std::isfinite(error) || work.report.newton >= work.most)
         break;
