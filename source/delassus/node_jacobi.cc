@@ -168,7 +168,7 @@ namespace nsfd
     if (springs && !by_vertex_)
       done = factorise(matrix, *springs, general) && done;
     if (springs)
-      copy_blocks<dim>(matrix.parting_points(), *springs, springs_);
+      copy_of_points<dim * dim>(matrix.parting_points(), *springs, springs_);
     else
       springs_.clear();
     of_general_ = general;

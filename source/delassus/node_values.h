@@ -38,18 +38,16 @@ namespace nsfd
           dP[k] -= T[k * dim + e] * dU[i * dim + e];
   }
 
-  /** @p to = @p from, blocks of dim x dim per point that are 0 but at @p
-      points. */
-  template <int dim>
-  void copy_blocks(const std::vector<unsigned int> &points,
-                   const std::vector<double> &from, std::vector<double> &to)
+  /** @p to = @p from, n values per point that are 0 but at @p points. */
+  template <unsigned int n>
+  void copy_of_points(const std::vector<unsigned int> &points,
+                      const std::vector<double> &from, std::vector<double> &to)
   {
     if (to.size() != from.size()) {
       to = from;
       return;
     }
     for (const std::size_t i : points)
-      std::copy_n(from.begin() + long(i * dim * dim), dim * dim,
-                  to.begin() + long(i * dim * dim));
+      std::copy_n(from.begin() + long(i * n), n, to.begin() + long(i * n));
   }
 } // namespace nsfd

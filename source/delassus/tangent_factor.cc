@@ -87,8 +87,8 @@ namespace nsfd
       springs_.clear();
       return false;
     }
-    copy_blocks<dim>(matrix.parting_points(), springs, springs_);
-    copy_blocks<dim>(matrix.parting_points(), springs, present_);
+    copy_of_points<dim * dim>(matrix.parting_points(), springs, springs_);
+    copy_of_points<dim * dim>(matrix.parting_points(), springs, present_);
     is_general_ = general;
     solver_.iterate_with(
         [this, &matrix](const std::vector<double> &x, std::vector<double> &y) {

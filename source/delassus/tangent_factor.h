@@ -93,7 +93,7 @@ namespace nsfd
     void iterate_on(const JoinedMatrix<dim> &matrix,
                     const std::vector<double> &springs)
     {
-      copy_blocks<dim>(matrix.parting_points(), springs, present_);
+      copy_of_points<dim * dim>(matrix.parting_points(), springs, present_);
     }
 
     ConformingSolver &solver() { return solver_; }

@@ -8,6 +8,7 @@
 #include "nsfd/postprocess/observable.h"
 #include "nsfd/verification/verification_case.h"
 #include "read_sections.h"
+#include "time_integration/step_entry.h"
 
 #include <fmt/format.h>
 
@@ -253,10 +254,7 @@ namespace nsfd
                         value = scene->echo.find("moreau-jean", entry);
       scene->echo.replace(value, std::strlen("moreau-jean"), "auto");
       // of rigid bodies alone no step is the longest
-      const bool all_rigid =
-          std::all_of(scene->materials.begin(), scene->materials.end(),
-                      [](const MaterialInput &one) { return one.rigid; });
-      if (has_step && (longest || all_rigid))
+      if (has_step && (longest || all_rigid(*scene)))
         choice->given_steps = read({{"scheme", "explicit"}}, of_given);
       choice->longest_steps = std::move(longest);
       scene->automatic = std::move(choice);

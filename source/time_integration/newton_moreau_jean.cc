@@ -5,6 +5,7 @@
 #include "inelastic_model.h"
 #include "large_motion_model.h"
 #include "save_problem.h"
+#include "step_entry.h"
 
 #include "core/cost.h"
 #include "core/stopwatch.h"
@@ -23,16 +24,10 @@ namespace nsfd
   {
     constexpr unsigned int most_iterations = 40;
 
-    bool is_rigid(const SceneInput &input)
-    {
-      return std::all_of(input.materials.begin(), input.materials.end(),
-                         [](const auto &material) { return material.rigid; });
-    }
-
     /** All bodies are rigid, and what they may touch stands still. */
     bool may_rest(const SceneInput &input)
     {
-      return is_rigid(input) &&
+      return all_rigid(input) &&
              std::none_of(
                  input.obstacles.begin(), input.obstacles.end(),
                  [](const auto &obstacle) { return obstacle.moves(); });
@@ -51,7 +46,7 @@ namespace nsfd
             bodies)),
         solver_name_(solver_name(input.solver.method, "frictional contact"))
   {
-    only_rigid_ = is_rigid(input);
+    only_rigid_ = all_rigid(input);
     if (!may_rest(input))
       return;
     this->step_problem_.let_stay(true);

@@ -239,6 +239,27 @@ subsection Indicator: test
 end
 )";
 
+    /** The plate, whose faces at @p where alone may break. */
+    std::string with_plane(const std::string &where)
+    {
+      const std::string faces = R"(
+subsection Interface: plane
+  set where     = )" + where + R"(
+  set law       = camacho-ortiz
+  set strength  = 300 MPa
+  set toughness = 0.5 J/m^2
+end
+subsection Interface: elsewhere
+  set where = all
+  set law   = joined
+end
+)";
+      std::string text = plate;
+      const auto from = text.find("subsection Interface"),
+                 to = text.find("subsection Time");
+      return text.replace(from, to - from, faces);
+    }
+
     /** Steps on a mesh that changes. */
     struct BisectedRun {
       explicit BisectedRun(const std::string &text,
@@ -378,22 +399,7 @@ end
     // A plane, cut in halves while it breaks, takes its toughness.
     TEST(Bisection, PlaneTakesItsToughness)
     {
-      const std::string plane = R"(
-subsection Interface: plane
-  set where     = abs(y - 5 um) < 1 nm
-  set law       = camacho-ortiz
-  set strength  = 300 MPa
-  set toughness = 0.5 J/m^2
-end
-subsection Interface: elsewhere
-  set where = all
-  set law   = joined
-end
-)";
-      std::string text = plate;
-      const auto from = text.find("subsection Interface"),
-                 to = text.find("subsection Time");
-      text.replace(from, to - from, plane);
+      const std::string text = with_plane("abs(y - 5 um) < 1 nm");
       double damage[2]; // without and with cuts
       for (const bool may_cut : {false, true}) {
         BisectedRun run(
@@ -422,23 +428,7 @@ end
     // of them is not.
     TEST(Bisection, SelectionsKeepTheirFaces)
     {
-      const std::string plane = R"(
-subsection Interface: part of a plane
-  set where     = abs(y - 5 um) < 1 nm && x > 4.1 um
-  set law       = camacho-ortiz
-  set strength  = 300 MPa
-  set toughness = 0.5 J/m^2
-end
-subsection Interface: elsewhere
-  set where = all
-  set law   = joined
-end
-)";
-      std::string text = plate;
-      const auto from = text.find("subsection Interface"),
-                 to = text.find("subsection Time");
-      text.replace(from, to - from, plane);
-      BisectedRun run(text);
+      BisectedRun run(with_plane("abs(y - 5 um) < 1 nm && x > 4.1 um"));
       const auto length = [&] {
         const auto &points = run.model.discretization->points();
         const auto &origins = run.model.discretization->origins();

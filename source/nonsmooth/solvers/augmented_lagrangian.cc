@@ -3,6 +3,7 @@
 
 #include "core/cost.h"
 #include "core/pages_of_zeros.h"
+#include "delassus/node_values.h"
 #include "linear_algebra/positive_part.h"
 #include "nonsmooth/natural_map.h"
 #include "nonsmooth/point_tangent.h"
@@ -287,7 +288,6 @@ namespace nsfd
     const double start = -slope(work, 0.);
     double length = 1., low = 0., high = 1.;
     const auto try_length = [&] {
-      moved_.resize(velocity_.size());
       copy_of_points<dim>(work.problem.acting, velocity_, moved_);
       add<dim>(work.problem.acting, length, dU_, moved_);
       answer(work, moved_);

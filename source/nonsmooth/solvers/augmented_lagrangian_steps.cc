@@ -3,6 +3,7 @@
 
 #include <deal.II/base/tensor.h>
 
+#include "delassus/node_values.h"
 #include "nonsmooth/point_tangent.h"
 #include "nonsmooth/row_work.h"
 

@@ -48,13 +48,4 @@ namespace nsfd
                ? (problem.given_velocity[k] - U[k]) / R
                : 0.;
   }
-
-  /** Of these points @p to, which has room for all. */
-  template <int dim>
-  void copy_of_points(const std::vector<unsigned int> &points,
-                      const std::vector<double> &from, std::vector<double> &to)
-  {
-    for (const std::size_t i : points)
-      std::copy_n(&from[i * dim], dim, &to[i * dim]);
-  }
 } // namespace nsfd
