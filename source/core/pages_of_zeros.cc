@@ -1,5 +1,6 @@
 #include "pages_of_zeros.h"
 
+#include <malloc.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -8,6 +9,8 @@
 
 namespace nsfd
 {
+  void release_freed_memory() { malloc_trim(0); }
+
   /**
    * Pages of the heap are private and have no file behind them: those that
    * are given back are pages of zeros when they are read.

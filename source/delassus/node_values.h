@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/pages_of_zeros.h"
+
 #include <algorithm>
 #include <vector>
 
@@ -44,8 +46,8 @@ namespace nsfd
                       const std::vector<double> &from, std::vector<double> &to)
   {
     if (to.size() != from.size()) {
-      to = from;
-      return;
+      to.assign(from.size(), 0.);
+      release_pages_of_zeros(to);
     }
     for (const std::size_t i : points)
       std::copy_n(from.begin() + long(i * n), n, to.begin() + long(i * n));

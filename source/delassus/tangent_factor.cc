@@ -1,12 +1,23 @@
 #include "tangent_factor.h"
 
 #include "core/cost.h"
+#include "core/pages_of_zeros.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace nsfd
 {
+  namespace
+  {
+    /** Most of them are none. */
+    void keep(const std::vector<double> &springs, std::vector<double> &kept)
+    {
+      kept = springs;
+      release_pages_of_zeros(kept);
+    }
+  } // namespace
+
   template <int dim>
   void TangentFactor<dim>::set_space(const CoarseSpace &space)
   {
@@ -58,7 +69,7 @@ namespace nsfd
     clear();
     if (!solver_.try_to_prepare(matrix))
       return false;
-    springs_ = springs;
+    keep(springs, springs_);
     return true;
   }
 
@@ -72,7 +83,7 @@ namespace nsfd
     if (!substructures_.factor(shares, *space_, matrix, springs.data(),
                                !general, solver_))
       return false;
-    springs_ = springs;
+    keep(springs, springs_);
     is_general_ = general;
     return true;
   }
@@ -109,8 +120,8 @@ namespace nsfd
     clear();
     if (!cycles_.prepare(matrix, springs))
       return false;
-    springs_ = springs;
-    present_ = springs;
+    keep(springs, springs_);
+    keep(springs, present_);
     wear_ = Wear();
     solver_.iterate_with(
         [this](const std::vector<double> &x, std::vector<double> &y) {

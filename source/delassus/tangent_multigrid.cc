@@ -2,6 +2,7 @@
 
 #include <deal.II/base/symmetric_tensor.h>
 
+#include "core/pages_of_zeros.h"
 #include "linear_algebra/small_inverse.h"
 
 #include <algorithm>
@@ -70,11 +71,14 @@ namespace nsfd
     diagonal_ = matrix.diagonal_blocks();
     limited_ = springs;
     limit(matrix, limited_);
+    release_pages_of_zeros(limited_);
     coarser_.set_matrix(matrix.assemble(limited_.data()));
     // before the hierarchy takes its room
     matrix.matrix_.value = std::vector<double>();
     matrix.joint_.values = std::vector<double>();
+    release_freed_memory();
     coarser_.build(matrix.space_->modes, matrix.size_, Multigrid::Finest::left);
+    release_freed_memory();
     matrix_ = &matrix;
     invert_diagonal(matrix);
     if (!adjust(matrix, springs))

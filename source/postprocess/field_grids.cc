@@ -111,6 +111,9 @@ namespace nsfd
             {"beta", 1, {}},     {"jump_n", 1, {}}, {"jump", 3, {}},
             {"traction", 3, {}}, {"slip", 1, {}},   {"contact", 1, {}},
             {"kind", 1, {}},     {"block", 1, {}},  {"obstacle", 1, {}}};
+        const std::size_t n = discretization.points().n_owned,
+                          corners = dim == 2 ? 2 : 4;
+        grid.reserve(n * corners, n, n * corners);
       }
 
       /** A face as the body on @p side sees it. */
@@ -287,6 +290,10 @@ namespace nsfd
     CellStresses<dim> stresses(discretization, state);
     if (stresses.any_memory())
       grid.point_data.push_back({"equivalent_plastic_strain", 1, {}});
+    const std::size_t n = discretization.bodies().size(),
+                      n_cells = n * lattice.cells.size();
+    grid.reserve(n * lattice.points.size(), n_cells,
+                 n_cells * lattice.cells[0].size());
     const std::vector<unsigned int> fragment = fragments.number_bodies();
     for (unsigned int b = 0; b < discretization.bodies().size(); ++b) {
       const auto corners = discretization.cells().corners[b];
@@ -334,7 +341,7 @@ namespace nsfd
         // the points lie as seen from this side
         pieces.add(face, face.bodies[0] >= 0 ? 0 : 1, face_numbers[f]);
     }
-    return pieces.grid;
+    return std::move(pieces.grid);
   }
 
 #define NSFD_INSTANTIATE(dim)                                                  \

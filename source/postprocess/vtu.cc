@@ -134,6 +134,19 @@ namespace nsfd
     offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
   }
 
+  void VtuGrid::reserve(const std::size_t n_points, const std::size_t n_cells,
+                        const std::size_t n_corners)
+  {
+    points.reserve(n_points);
+    cells.reserve(n_cells);
+    connectivity.reserve(n_corners);
+    offsets.reserve(n_cells);
+    for (Array &array : point_data)
+      array.values.reserve(n_points * array.components);
+    for (Array &array : cell_data)
+      array.values.reserve(n_cells * array.components);
+  }
+
   std::string vtu_name(const std::string &base, const unsigned int number,
                        const unsigned int rank, const unsigned int n_ranks)
   {

@@ -38,6 +38,9 @@ namespace nsfd
     std::vector<Array> point_data, cell_data;
 
     void add_cell(VtuCell shape, const std::vector<std::int64_t> &corners);
+    /** Room for so many, also in the arrays that there are. */
+    void reserve(std::size_t n_points, std::size_t n_cells,
+                 std::size_t n_corners);
   };
 
   /** interfaces_00012.vtu; with several ranks interfaces_00012.0003.vtu */

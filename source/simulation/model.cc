@@ -171,7 +171,9 @@ namespace nsfd
   template <int dim>
   const OneStepProblem<dim> &Model<dim>::points() const
   {
-    return leapfrog ? leapfrog->parts().constants : stepper->problem();
+    return leapfrog  ? leapfrog->parts().constants
+           : stepper ? stepper->problem()
+                     : equilibria->search().points();
   }
 
   template <int dim>
@@ -180,8 +182,18 @@ namespace nsfd
     std::vector<TimeIntegrator<dim> *> all;
     if (equilibria)
       all.push_back(equilibria.get());
-    all.push_back(other ? other.get() : stepper.get());
+    if (other || stepper)
+      all.push_back(other ? other.get() : stepper.get());
     return all;
+  }
+
+  template <int dim>
+  void Model<dim>::forget_dynamics()
+  {
+    stepper.reset();
+    solver.reset();
+    bonded = nullptr;
+    delassus.reset();
   }
 
   template <int dim>

@@ -41,7 +41,8 @@ namespace nsfd
     std::string method; ///< name of the nonsmooth solver
     /// of a linear stepper; others make one for every problem
     std::unique_ptr<NonsmoothSolver<dim>> solver;
-    /// has the points and the initial state, or null with `leapfrog`
+    /// has the points and the initial state; null with `leapfrog`, and where
+    /// its work is done, see forget_dynamics()
     std::unique_ptr<MoreauJean<dim>> stepper;
     std::unique_ptr<TimeIntegrator<dim>> other;   ///< in its place, or null
     Leapfrog<dim> *leapfrog = nullptr;            ///< the same, or null
@@ -96,6 +97,9 @@ namespace nsfd
       groups.reset();
       triangulation.reset();
     }
+
+    /** The initial state is known, and equilibria are all that follows. */
+    void forget_dynamics();
 
   private:
     void build_mesh_parts(const SceneInput &input,

@@ -180,6 +180,10 @@ namespace nsfd
       add(*model.equilibria);
     if (model.stepper)
       add(*model.stepper);
+    else if (model.equilibria) { // the same rows in all summaries
+      const auto none = stage_seconds(StepTimings());
+      stages.insert(stages.end(), none.begin(), none.end());
+    }
     stages.emplace_back("output", output);
     return stages;
   }

@@ -60,9 +60,13 @@ namespace nsfd
                                std::map<std::string, double> &counters) const
   {
     auto &c = counters;
-    if (model_.delassus)
-      fill_products(model_.delassus->counters(), c);
-    if (model_.bonded)
+    // equilibria count theirs by themselves
+    if (model_.delassus || model_.equilibria)
+      fill_products(model_.delassus
+                        ? model_.delassus->counters()
+                        : typename DelassusOperator<dim>::Counters(),
+                    c);
+    if (model_.bonded || (!model_.delassus && input_.has_bonded_faces()))
       c["released_bonds"] = double(released_);
     c["steps_beyond_uniqueness"] = beyond_unique_;
     c["penetration_excess"] = state.penetration_excess;

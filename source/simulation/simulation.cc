@@ -8,6 +8,7 @@
 #include "core/cost.h"
 #include "core/exit_code.h"
 #include "core/output_folder.h"
+#include "core/pages_of_zeros.h"
 #include "core/stop_request.h"
 #include "state/point_fields.h"
 
@@ -91,6 +92,9 @@ namespace nsfd
       if (!set_state(found))
         return exit_code::bad_input;
       recorder_.open(state_);
+      if (!input_.may_move())
+        model_.forget_dynamics();
+      release_freed_memory();
       store_ = std::make_unique<RunStore<dim>>(parts_);
       charge.reset();
       if (!found)

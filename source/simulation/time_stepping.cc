@@ -81,8 +81,11 @@ namespace nsfd
   void TimeStepping<dim>::fill_counters(std::map<std::string, double> &c) const
   {
     controller_.fill_counters(c);
-    if (model_.other && model_.stepper) // summaries have the same keys
+    // summaries have the same keys
+    if (model_.other && model_.stepper)
       model_.stepper->fill_counters(c);
+    else if (model_.equilibria)
+      nsfd::fill_counters(StepCounters(), c);
     for (const TimeIntegrator<dim> *one : model_.integrators())
       one->fill_counters(c);
   }

@@ -90,6 +90,12 @@ namespace nsfd
   }
 
   template <int dim>
+  const OneStepProblem<dim> &EquilibriumSearch<dim>::points() const
+  {
+    return relaxation_->points();
+  }
+
+  template <int dim>
   const StepCounters &EquilibriumSearch<dim>::solver_counters() const
   {
     return relaxation_->counters();
@@ -119,6 +125,7 @@ namespace nsfd
     state.pressure_work = state.positive_friction_work = 0.;
     state.step = 0;
     state.time = 0.;
+    release_zeros(state);
     return state;
   }
 
@@ -179,6 +186,7 @@ namespace nsfd
       report.place = face_of_all(-seen.least, seen.point);
     else if (report.jumps)
       report.place = face_of_all(left.worst, left.worst_point);
+    release_zeros(next);
     return report;
   }
 
@@ -241,14 +249,14 @@ namespace nsfd
       if (!found || merit(report) > merit(best)) {
         found = true;
         best = report;
+        // or a jump downhill, where no shorter step is to show another way
+        if (best.accepted() ||
+            (!may_be_shortened && best.may_follow() && best.stable))
+          return best;
         best_next = next;
         release_zeros(best_next);
         reactions = balance_->reactions();
       }
-      // or a jump downhill, where no shorter step is to show another way
-      if (best.accepted() ||
-          (!may_be_shortened && best.may_follow() && best.stable))
-        break;
     }
     if (!found)
       throw StepRejected(failure);

@@ -98,6 +98,8 @@ namespace nsfd
       unsigned long long equilibria = 0, rounds = 0, step_changes = 0;
     };
     const Counters &counters() const { return counters_; }
+    /** The constant data of the points. */
+    const OneStepProblem<dim> &points() const;
     const StepCounters &solver_counters() const;
     const StepTimings &timings() const;
     const typename DelassusOperator<dim>::Counters &delassus_counters() const

@@ -58,25 +58,14 @@ namespace nsfd
   template <int dim>
   void MoreauJean<dim>::fill_counters(std::map<std::string, double> &c) const
   {
-    c["solver_calls"] = double(counters_.solves);
-    c["newton"] = double(counters_.newton);
-    c["krylov"] = double(counters_.krylov);
-    c["gauss_seidel_sweeps"] = double(counters_.sweeps);
-    c["line_searches"] = double(counters_.line_searches);
-    c["law_sweeps"] = double(counters_.law_sweeps);
-    c["load_assemblies"] = double(counters_.load_assemblies);
-    c["activation_rounds"] = double(counters_.activation_rounds);
+    nsfd::fill_counters(counters_, c);
   }
 
   template <int dim>
   std::vector<std::pair<std::string, double>>
   MoreauJean<dim>::stage_seconds() const
   {
-    std::vector<std::pair<std::string, double>> stages = {
-        {"loads and free motion", timings_.assembly},
-        {"nonsmooth solve", timings_.solve},
-        {"update of bodies", timings_.update},
-        {"energy ledger", timings_.ledger}};
+    auto stages = nsfd::stage_seconds(timings_);
     if (input_.large_motion)
       stages.insert(stages.begin() + 1,
                     {"contact search", timings_.contact_search});

@@ -258,7 +258,8 @@ namespace nsfd
     const double energy_scale = balance_.point_scale() / (share * share);
     LawEvaluation<dim> evaluation(problem_, delassus, energy_scale, tolerance);
     for (std::size_t i = 0; i < iterate_.activated.size(); ++i)
-      set_start(i, evaluation.solutions[i].reach);
+      if (problem_.interactions[problem_.interaction[i]].law)
+        set_start(i, evaluation.solutions[i].reach);
     std::vector<double> impulse = iterate_.force;
     for (double &P : impulse)
       P *= h;

@@ -82,6 +82,7 @@ namespace nsfd
 
     /** Data of the step of the load as a whole, over the last h. */
     const OneStepProblem<dim> &load_step();
+    const OneStepProblem<dim> &points() const { return problem_; }
     /** Of the last round: r in N, local solutions, forces, pressure. */
     const std::vector<double> &point_force() const { return iterate_.force; }
     const std::vector<LocalSolution<dim>> &solutions() const

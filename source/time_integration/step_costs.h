@@ -1,5 +1,10 @@
 #pragma once
 
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace nsfd
 {
   /** CPU time of the stages of all steps so far, s. */
@@ -14,4 +19,10 @@ namespace nsfd
                        law_sweeps = 0, line_searches = 0, load_assemblies = 0,
                        activation_rounds = 0, sliding_rounds = 0;
   };
+
+  /** By the names of summaries. */
+  void fill_counters(const StepCounters &steps,
+                     std::map<std::string, double> &counters);
+  std::vector<std::pair<std::string, double>>
+  stage_seconds(const StepTimings &steps);
 } // namespace nsfd
