@@ -158,6 +158,16 @@ namespace nsfd
     return place;
   }
 
+  namespace
+  {
+    /** Points have laws that damage, on any rank. */
+    bool has_laws(const SceneInput &input)
+    {
+      return std::any_of(input.interfaces.begin(), input.interfaces.end(),
+                         [](const InterfaceInput &one) { return one.law; });
+    }
+  } // namespace
+
   template <int dim>
   EquilibriumReport
   EquilibriumSearch<dim>::try_way(const State &old, const double time,
@@ -195,7 +205,7 @@ namespace nsfd
   EquilibriumSearch<dim>::advance(const State &old, const double time,
                                   State &next, const bool may_be_shortened)
   {
-    if (!relaxation_->has_laws())
+    if (!has_laws(input_))
       return try_way(old, time, Way::near, false, next);
 
     // nothing damages: one equilibrium, and next to the last one

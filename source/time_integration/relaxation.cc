@@ -96,15 +96,6 @@ namespace nsfd
     free_motion_.set_pressure(old, time, pressure_);
   }
 
-  template <int dim>
-  bool Relaxation<dim>::has_laws() const
-  {
-    bool any = false;
-    for (const auto &block : input_.interfaces)
-      any = any || block.law;
-    return any;
-  }
-
   /** The largest prescribed jump of this rank, m. */
   template <int dim>
   double Relaxation<dim>::largest_motion() const

@@ -62,8 +62,6 @@ namespace nsfd
     HeldLaws<dim> &laws() { return laws_; }
     /** Of bodies that share nodes, or null. */
     StaticBonds<dim> *bonds() { return bonds_.get(); }
-    /** Points have laws that damage, on any rank. */
-    bool has_laws() const;
     /** See ForceBalance. */
     double imbalance() const { return balance_.imbalance(); }
     const std::vector<double> &residual() const { return balance_.residual(); }
