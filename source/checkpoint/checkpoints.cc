@@ -85,6 +85,8 @@ namespace nsfd
     image->write("command_line", options_.command_line);
     image->write("parameters", input_.echo);
     image->write("parameter_file", file.str());
+    image->write("steps_in_time",
+                 std::vector<std::uint8_t>{std::uint8_t(input_.may_move())});
     image->write("mesh/cells", cells, 4);
     image->write("mesh/faces", faces, 2);
     image->write("mesh/fingerprint", fingerprint);

@@ -27,7 +27,9 @@ namespace nsfd
     std::unique_ptr<Hdf5Image> image; ///< on the first rank
     bool same_solver = true;          ///< what solvers have kept is of use
     bool same_steps = true; ///< the sequence of bisected steps goes on
-    std::string notes;      ///< about older files, and changed parameters
+    /** Steps in time follow those of the load then and now, or neither. */
+    bool same_integrators = true;
+    std::string notes; ///< about older files, and changed parameters
   };
 
   /**

@@ -70,6 +70,16 @@ namespace nsfd
       return refused.empty();
     }
 
+    /** Older checkpoints do not say. */
+    void compare_integrators(const SceneInput &input, FoundCheckpoint &found)
+    {
+      std::vector<std::uint8_t> then;
+      unsigned int components = 1;
+      if (found.image->read("steps_in_time", then, components) &&
+          then.size() == 1)
+        found.same_integrators = (then[0] != 0) == input.may_move();
+    }
+
     /** False if one is not allowed. Both kinds are noted. */
     bool compare_parameters(const SceneInput &input, FoundCheckpoint &found)
     {
@@ -125,16 +135,20 @@ namespace nsfd
             "section Output, and when a run is stopped\n";
       good = found.image && compare_plug_ins(found) &&
              compare_parameters(input, found);
+      if (good)
+        compare_integrators(input, found);
       if (!found.notes.empty())
         std::cerr << input.file << ": " << (good ? "note: " : "error: ")
                   << found.notes;
     }
     if (communicator.any(!good))
       return {};
-    int flags[2] = {found.same_solver, found.same_steps};
-    MPI_Bcast(flags, 2, MPI_INT, 0, communicator.mpi());
+    int flags[3] = {found.same_solver, found.same_steps,
+                    found.same_integrators};
+    MPI_Bcast(flags, 3, MPI_INT, 0, communicator.mpi());
     found.same_solver = flags[0] != 0;
     found.same_steps = flags[1] != 0;
+    found.same_integrators = flags[2] != 0;
     return found;
   }
 } // namespace nsfd

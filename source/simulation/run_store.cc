@@ -40,7 +40,8 @@ namespace nsfd
   void RunStore<dim>::read(Archive &archive, const FoundCheckpoint &found)
   {
     serialize_state(archive);
-    serialize_parts(archive, found.same_solver && has_solvers_);
+    serialize_parts(archive, found.same_solver && has_solvers_,
+                    found.same_integrators);
     if (!found.same_steps)
       parts_.steps.renew_steps(parts_.state);
     parts_.recorder.serialize_files(archive); // the first to touch a file
@@ -50,7 +51,7 @@ namespace nsfd
   void RunStore<dim>::serialize_state(Archive &archive)
   {
     serialize(parts_.state, archive);
-    bool is_static = parts_.steps.is_first_of_two();
+    bool is_static = parts_.steps.is_static();
     archive.numbers("is_static", is_static, has_solvers_);
     if (archive.reads())
       parts_.steps.resume(parts_.state, is_static);
@@ -58,10 +59,11 @@ namespace nsfd
 
   /** Everything else that later steps or the end of the run depend on. */
   template <int dim>
-  void RunStore<dim>::serialize_parts(Archive &archive, const bool with_solvers)
+  void RunStore<dim>::serialize_parts(Archive &archive, const bool with_solvers,
+                                      const bool all_integrators)
   {
-    parts_.steps.serialize(archive);
-    if (with_solvers)
+    parts_.steps.serialize(archive, all_integrators);
+    if (with_solvers && all_integrators)
       parts_.steps.serialize_solvers(archive);
     if (parts_.adaptive)
       parts_.adaptive->serialize(archive);
@@ -77,7 +79,7 @@ namespace nsfd
     parts_.steps.integrator().show(parts_.state);
     const std::string failure = checkpoints_.write([&](Archive &archive) {
       serialize_state(archive);
-      serialize_parts(archive, with_solvers);
+      serialize_parts(archive, with_solvers, true);
       parts_.recorder.serialize_files(archive);
     });
     stored_ = !parts_.communicator.any(!failure.empty());

@@ -66,7 +66,8 @@ namespace nsfd
 
   private:
     void serialize_state(Archive &archive);
-    void serialize_parts(Archive &archive, bool with_solvers);
+    void serialize_parts(Archive &archive, bool with_solvers,
+                         bool all_integrators);
     void read(Archive &archive, const FoundCheckpoint &found);
 
     RunParts<dim> &parts_;

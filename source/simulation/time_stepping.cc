@@ -91,19 +91,26 @@ namespace nsfd
   }
 
   template <int dim>
-  void TimeStepping<dim>::resume(const State &state, const bool is_first_of_two)
+  void TimeStepping<dim>::resume(const State &state, const bool is_static)
   {
-    stage_ = is_first_of_two ? 0 : model_.integrators().size() - 1;
+    if (!is_static && !input_.may_move())
+      throw BadCheckpoint(fmt::format(
+          "the bodies move in time at t = {:.6g} s, and this scene has steps "
+          "of the load alone: write `set at solution jump = dynamic` in "
+          "section Time, as it was",
+          state.time));
+    stage_ = is_static ? 0 : model_.integrators().size() - 1;
     integrator().resume_from(state);
   }
 
   template <int dim>
-  void TimeStepping<dim>::serialize(Archive &archive)
+  void TimeStepping<dim>::serialize(Archive &archive, const bool all)
   {
     controller_.serialize(archive);
     model_.control->serialize(archive);
     for (TimeIntegrator<dim> *one : model_.integrators())
-      one->serialize(archive);
+      if (all || one == &integrator())
+        one->serialize(archive);
   }
 
   template <int dim>

@@ -58,10 +58,18 @@ namespace nsfd
     {
       return stage_ + 1 < model_.integrators().size();
     }
-    /** As stored, from @p state on; before serialize(). Collective. */
-    void resume(const State &state, bool is_first_of_two);
-    /** What later steps depend on. Collective. */
-    void serialize(Archive &archive);
+    /** Equilibria are found, nothing moves in time yet. */
+    bool is_static() const { return model_.equilibria && stage_ == 0; }
+    /**
+     * As stored, from @p state on; before serialize(). Collective. Errors
+     * raised: BadCheckpoint if it moves and the scene has no steps in time.
+     */
+    void resume(const State &state, bool is_static);
+    /**
+     * What later steps depend on; of @p all integrators, or of the present one
+     * alone. Collective.
+     */
+    void serialize(Archive &archive, bool all);
     /** What solvers keep from step to step. Collective. */
     void serialize_solvers(Archive &archive);
     /** Other steps, or to another end. Errors raised: BadCheckpoint. */

@@ -46,9 +46,18 @@ namespace nsfd
     return next.beta[i] < 1e-3 && old.beta[i] >= 1e-3;
   }
 
+  /** How far the sum of the lines is off, J, @p initial_energy included. */
+  inline double balance_defect(const EnergyLines &energy,
+                               const double initial_energy)
+  {
+    return energy.kinetic + energy.elastic + energy.cohesive + energy.damage +
+           energy.friction + energy.viscous + energy.plastic + energy.impact +
+           energy.numerical - energy.work - initial_energy;
+  }
+
   /**
-   * The largest energy so far, and how far the sum of the lines is off: not a
-   * number if one of them is none.
+   * The largest energy so far, how far the sum of the lines is off, and what of
+   * that came with this step: not a number if one of them is none.
    */
   inline void close_balance(const State &old, State &next, StepReport &report)
   {
@@ -57,10 +66,9 @@ namespace nsfd
         {old.largest_energy, energy.kinetic, energy.elastic, energy.cohesive,
          std::abs(energy.work), energy.damage, energy.impact, energy.friction,
          energy.viscous, energy.plastic});
-    const double defect = energy.kinetic + energy.elastic + energy.cohesive +
-                          energy.damage + energy.friction + energy.viscous +
-                          energy.plastic + energy.impact + energy.numerical -
-                          energy.work - next.initial_energy;
+    const double defect = balance_defect(energy, next.initial_energy);
+    report.changes.defect =
+        std::abs(defect - balance_defect(old.energy, next.initial_energy));
     report.balance_residual = next.largest_energy > 0. || !std::isfinite(defect)
                                   ? std::abs(defect) / next.largest_energy
                                   : 0.;

@@ -52,6 +52,7 @@ namespace nsfd
 
     std::array<double, n_watched_lines> taken{};
     std::array<std::size_t, n_watched_lines> worst{};
+    double defect = 0.;   ///< by which the sum of all lines went astray, J
     double impulses = 0.; ///< sum R P^2 over the points, see LawEvaluation, J
     /// where velocities are prescribed and U = U_free + W P, else 0
     double impulses_of_rows = 0.;

@@ -72,7 +72,7 @@ namespace nsfd
                                std::max(changes.impulses, step.energy_scale)));
     const double bound = energy_round_off * changes.scale + noise +
                          // no line is known better than the balance closes
-                         10. * report.balance_residual * next.largest_energy;
+                         10. * changes.defect;
     for (std::size_t k = 0; k < n_watched_lines; ++k) {
       const auto line = WatchedLine(k);
       const bool two_sided =

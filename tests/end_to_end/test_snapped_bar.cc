@@ -1,4 +1,5 @@
 #include "compare.h"
+#include "restart.h"
 
 #include <gtest/gtest.h>
 
@@ -105,5 +106,45 @@ end
     expect_snap({"Mesh/lower corner=-L, 0", "Mesh/upper corner=0, 5 mm"});
     expect_snap({"Boundary: left/displacement y=0"});
     expect_snap({}, 2);
+  }
+
+  // What stopped at the jump is stored as an equilibrium, of a run without
+  // steps in time, and is followed in time from there on. The other way round
+  // a body in motion has no place among equilibria.
+  TEST(Restart, EquilibriaGoOnAsAMotion)
+  {
+    const Launch stop = {scene("static_michel"),
+                         {"Time/at solution jump=stop"}};
+    const Launch move =
+        with(stop, {"Time/at solution jump=dynamic",
+                    "Time/dynamic step=2 courant", "Time/end=0.8572676 s"});
+    const Workspace workspace;
+    const Result whole = run(workspace, "whole", move);
+    ASSERT_TRUE(whole.completed()) << whole.description();
+    ASSERT_EQ(whole.counter("solution_jumps"), 1.) << whole.description();
+
+    const Result stopped = run(workspace, "stopped", storing(stop, 1000));
+    ASSERT_EQ(stopped.outcome.exit_code, 3) << stopped.description();
+    const Result moved = resume(workspace, "stopped", storing(move, 1000));
+    ASSERT_TRUE(moved.completed()) << moved.description();
+    EXPECT_EQ(moved.counter("resumed"), 1.);
+    EXPECT_EQ(moved.counter("solution_jumps"), 2.); // it stopped at the first
+    EXPECT_GT(moved.number("steps"), stopped.number("steps"));
+    // the jump is met within a 1024th of a load step, 2e-5 of the load
+    expect_below(
+        "work at the jump",
+        std::abs(moved.history["work"].back() / whole.history["work"].back() -
+                 1.),
+        1e-4, "shortest step");
+    expect_below("balance", moved.number("ledger_defect_max"), 1e-9,
+                 "closed over both parts");
+    EXPECT_EQ(moved.number("fragments"), whole.number("fragments"));
+
+    const Result back = resume(workspace, "stopped",
+                               storing(with(stop, {"Time/end=0.9 s"}), 1000));
+    EXPECT_EQ(back.outcome.exit_code, 1) << back.description();
+    EXPECT_NE(back.outcome.err.find("at solution jump = dynamic"),
+              std::string::npos)
+        << back.description();
   }
 } // namespace end_to_end::test_snapped_bar
