@@ -1,6 +1,6 @@
 # cmake --install build --prefix PREFIX: the program, the headers of plug-ins,
-# the package that finds them, the shipped scenes with their meshes, and the
-# examples of plug-ins.
+# the package that finds them, the Python package, the shipped scenes with their
+# meshes, and the examples of plug-ins and scripts.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -33,3 +33,22 @@ install(FILES ${CMAKE_BINARY_DIR}/package/nsfdConfig.cmake
               ${CMAKE_CURRENT_LIST_DIR}/plug_in.cc.in
               ${CMAKE_CURRENT_LIST_DIR}/plug_in.map
         DESTINATION ${package})
+
+# Where Python of Debian looks for modules without compiled parts: below
+# /usr/local in the folder of its version, below /usr in that of all versions,
+# which is also the place below any other prefix (then named in PYTHONPATH). The
+# prefix is known at installation only.
+find_program(NSFD_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH
+             DOC "Python that finds the package nsfd when it is installed")
+install(CODE "
+  set(place lib/python3/dist-packages)
+  if(CMAKE_INSTALL_PREFIX STREQUAL \"/usr/local\" AND \"${NSFD_PYTHON}\")
+    execute_process(
+      COMMAND \"${NSFD_PYTHON}\" -c
+        \"import sys; print('lib/python%d.%d/dist-packages' % sys.version_info[:2])\"
+      OUTPUT_VARIABLE place OUTPUT_STRIP_TRAILING_WHITESPACE)
+  endif()
+  file(INSTALL \"${CMAKE_SOURCE_DIR}/source/python/nsfd\"
+       DESTINATION \"\${CMAKE_INSTALL_PREFIX}/\${place}\"
+       FILES_MATCHING PATTERN *.py PATTERN __pycache__ EXCLUDE)
+")

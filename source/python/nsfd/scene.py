@@ -140,13 +140,13 @@ class Section(MutableMapping):
         return self._scene._entries(self._name)
 
     def __getitem__(self, name):
-        return self._scene[f"{self._name}/{name}"]
+        return self._scene._get(self._name, _collapsed(name))
 
     def __setitem__(self, name, value):
-        self._scene[f"{self._name}/{name}"] = value
+        self._scene._set(self._name, _collapsed(name), value_text(value))
 
     def __delitem__(self, name):
-        del self._scene[f"{self._name}/{name}"]
+        self._scene._delete(self._name, _collapsed(name))
 
     def __iter__(self):
         return iter(self._entries())
@@ -203,10 +203,12 @@ class Scene(MutableMapping):
 
     def to_dict(self):
         """All entries as text: {"dimension": "2", "Time": {"end": "1 ms"}}."""
-        return {
-            key: dict(value) if isinstance(value, Section) else value
-            for key, value in self.items()
-        }
+        top, sections = {}, {}
+        for one in self._statements():
+            entries = sections.setdefault(one.section, {}) if one.section else top
+            if one.name is not None:
+                entries.setdefault(one.name, one.value)
+        return {**top, **sections}
 
     def entry_at(self, line):
         """"Section/name" of the entry, or the name of the section, that stands
@@ -271,34 +273,25 @@ class Scene(MutableMapping):
 
     def _split(self, path):
         """Section and name; name is None if the path is that of a section."""
-        section = _section_name(path)
-        if section in self._sections():
-            return section, None
-        head, slash, name = path.rpartition("/")
-        return (_section_name(head) if slash else ""), _collapsed(name)
+        sections = self._sections()
+        if _section_name(path) in sections:
+            return _section_name(path), None
+        # names of blocks may hold a slash, as those of entries of Vary do
+        at = [k for k, letter in enumerate(path) if letter == "/"]
+        known = [k for k in at if _section_name(path[:k]) in sections]
+        if known or at:
+            cut = max(known) if known else at[0 if path.startswith("Vary:") else -1]
+            return _section_name(path[:cut]), _collapsed(path[cut + 1 :])
+        return "", _collapsed(path)
 
     def __getitem__(self, path):
         section, name = self._split(path)
-        if name is None:
-            return Section(self, section)
-        entries = self._entries(section)
-        if name not in entries:
-            here = f"section {section!r}" if section else "the top level"
-            known = ", ".join([*entries, *([] if section else self._sections())])
-            raise KeyError(f"there is no {name!r} in {here}; there are: {known}")
-        return entries[name].value
+        return Section(self, section) if name is None else self._get(section, name)
 
     def __setitem__(self, path, value):
         section, name = self._split(path)
         if isinstance(value, Mapping):
-            # in its place: of blocks the first one that holds counts
-            section = _section_name(path)
-            if section not in self._sections():
-                self._lines += [f"subsection {section}", "end"]
-            for old in set(self._entries(section)) - {_collapsed(new) for new in value}:
-                del self[f"{section}/{old}"]
-            for new, part in value.items():
-                self._set(section, _collapsed(new), value_text(part))
+            self._replace(_section_name(path), value)
         elif name is None:
             raise TypeError(
                 f"{path!r} is a section: write a dictionary of its entries, or name "
@@ -310,16 +303,11 @@ class Scene(MutableMapping):
     def __delitem__(self, path):
         section, name = self._split(path)
         if name is not None:
-            if name not in self._entries(section):
-                raise KeyError(f"there is no {path!r}")
-            one = self._entries(section)[name]
-            _refuse_included(path, one)
-            del self._lines[one.first : one.last + 1]
+            self._delete(section, name)
             return
-        for one in self._entries(section).values():
-            _refuse_included(path, one)
         begin = self._sections()[section]
-        _refuse_included(path, begin)
+        for one in [begin, *self._entries(section).values()]:
+            _refuse_included(one)
         del self._lines[begin.first : self._end_of(begin) + 1]
 
     def __iter__(self):
@@ -338,12 +326,35 @@ class Scene(MutableMapping):
                 return first
         return len(self._lines) - 1
 
+    def _get(self, section, name):
+        entries = self._entries(section)
+        if name not in entries:
+            here = f"section {section!r}" if section else "the top level"
+            known = ", ".join([*entries, *([] if section else self._sections())])
+            raise KeyError(f"there is no {name!r} in {here}; there are: {known}")
+        return entries[name].value
+
+    def _delete(self, section, name):
+        self._get(section, name)  # or say what there is
+        one = self._entries(section)[name]
+        _refuse_included(one)
+        del self._lines[one.first : one.last + 1]
+
+    def _replace(self, section, entries):
+        """In its place: of several blocks the first one that holds counts."""
+        if section not in self._sections():
+            self._lines += [f"subsection {section}", "end"]
+        new = {_collapsed(name): value_text(value) for name, value in entries.items()}
+        for old in set(self._entries(section)) - set(new):
+            self._delete(section, old)
+        for name, text in new.items():
+            self._set(section, name, text)
+
     def _set(self, section, name, text):
-        path = f"{section}/{name}" if section else name
         entries = self._entries(section)
         if name in entries:
             one = entries[name]
-            _refuse_included(path, one)
+            _refuse_included(one)
             left, equals, _ = self._lines[one.first].partition("=")
             if not equals:  # in a line that goes on
                 left = f"{'  ' if section else ''}set {name} "
@@ -363,7 +374,7 @@ class Scene(MutableMapping):
         if section not in self._sections():
             self._lines += [f"subsection {section}", "end"]
         begin = self._sections()[section]
-        _refuse_included(path, begin)
+        _refuse_included(begin)
         self._lines.insert(self._end_of(begin), f"  set {name} = {text}")
 
 
@@ -375,10 +386,10 @@ def _path(statement):
     return f"{statement.section}/{statement.name}"
 
 
-def _refuse_included(path, statement):
+def _refuse_included(statement):
     if statement.included_from:
         raise ValueError(
-            f"{path!r} stands in '{statement.included_from}', which the scene "
+            f"{_path(statement)!r} stands in '{statement.included_from}', which the scene "
             "includes: change it there, or for one run with a setting of nsfd.run"
         )
 
