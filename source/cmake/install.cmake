@@ -36,19 +36,23 @@ install(FILES ${CMAKE_BINARY_DIR}/package/nsfdConfig.cmake
 
 # Where Python of Debian looks for modules without compiled parts: below
 # /usr/local in the folder of its version, below /usr in that of all versions,
-# which is also the place below any other prefix (then named in PYTHONPATH). The
-# prefix is known at installation only.
-find_program(NSFD_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH
-             DOC "Python that finds the package nsfd when it is installed")
+# which is the place below any other prefix as well (and then has to be named in
+# PYTHONPATH). The prefix may still change at installation.
+set(NSFD_LOCAL_MODULES lib/python3/dist-packages)
+execute_process(
+  COMMAND /usr/bin/python3 -c
+    "import sys; print('lib/python%d.%d/dist-packages' % sys.version_info[:2])"
+  OUTPUT_VARIABLE versioned RESULT_VARIABLE status
+  OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+if(status EQUAL 0)
+  set(NSFD_LOCAL_MODULES ${versioned})
+endif()
 install(CODE "
-  set(place lib/python3/dist-packages)
-  if(CMAKE_INSTALL_PREFIX STREQUAL \"/usr/local\" AND \"${NSFD_PYTHON}\")
-    execute_process(
-      COMMAND \"${NSFD_PYTHON}\" -c
-        \"import sys; print('lib/python%d.%d/dist-packages' % sys.version_info[:2])\"
-      OUTPUT_VARIABLE place OUTPUT_STRIP_TRAILING_WHITESPACE)
+  set(modules lib/python3/dist-packages)
+  if(CMAKE_INSTALL_PREFIX STREQUAL \"/usr/local\")
+    set(modules ${NSFD_LOCAL_MODULES})
   endif()
   file(INSTALL \"${CMAKE_SOURCE_DIR}/source/python/nsfd\"
-       DESTINATION \"\${CMAKE_INSTALL_PREFIX}/\${place}\"
+       DESTINATION \"\${CMAKE_INSTALL_PREFIX}/\${modules}\"
        FILES_MATCHING PATTERN *.py PATTERN __pycache__ EXCLUDE)
 ")

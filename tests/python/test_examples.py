@@ -99,7 +99,8 @@ class Installed(InScratch):
                 sys.executable,
                 "-Bc",
                 "import nsfd; from nsfd.program import find_program\n"
-                "print(nsfd.__file__, find_program(), nsfd.run('halves.prm').completed)",
+                "run = nsfd.run('halves.prm')\n"
+                "print(nsfd.__file__, find_program(), run.completed)",
             ],
             cwd=self.scratch,
             env=variables,

@@ -202,7 +202,9 @@ class Refused(InScratch):
         self.assertEqual(os.listdir(self.scratch), [])
 
     def test_errors_of_a_file_and_of_what_it_includes(self):
-        (self.scratch / "part.prm").write_text("subsection Time\n  set end = 1 kg\nend\n")
+        (self.scratch / "part.prm").write_text(
+            "subsection Time\n  set end = 1 kg\nend\n"
+        )
         (self.scratch / "all.prm").write_text(
             HALVES.split("subsection Time")[0] + "include part.prm\n"
         )
@@ -267,6 +269,19 @@ class Refused(InScratch):
         )
 
 
+class Said(InScratch):
+    def test_warnings_and_notes_are_kept(self):
+        scene = nsfd.Scene(MODE)
+        scene["Time/end"] = "1 us"
+        scene["Solver/path"] = "element-wise"
+        run = nsfd.run(scene, output=self.scratch / "run")
+        (note,) = run.notes
+        self.assertEqual((note.kind, note.entry), ("note", "Solver/path"))
+        self.assertEqual(note.file, "mode")
+        self.assertIn("is called `local` today", note.text)
+        self.assertEqual(run.warnings, [])
+
+
 class Studies(InScratch):
     few = {"repeats": 1, "limit checks": False}
 
@@ -297,7 +312,10 @@ class Studies(InScratch):
 
     def test_values_that_go_together_and_cases_that_fail(self):
         vary = {
-            ("Solver/maximum iterations", "Time/maximum bisections"): [(1, 0), (200, 2)],
+            ("Solver/maximum iterations", "Time/maximum bisections"): [
+                (1, 0),
+                (200, 2),
+            ],
             "Mesh/cells": "[4*2^0..1, 1]",
         }
         with self.assertRaises(nsfd.NotSolved) as caught:
@@ -331,10 +349,8 @@ def cells_of(grid):
     rows = []
     for cell, corners in enumerate(grid.cells):
         values = [grid.points[corners].tolist()]
-        values += [grid.cell_data[name][cell].tolist() for name in sorted(grid.cell_data)]
-        values += [
-            grid.point_data[name][corners].tolist() for name in sorted(grid.point_data)
-        ]
+        for data, places in ((grid.cell_data, cell), (grid.point_data, corners)):
+            values += [data[name][places].tolist() for name in sorted(data)]
         rows.append(values)
     return sorted(rows)
 

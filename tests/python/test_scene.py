@@ -55,7 +55,9 @@ class Texts(InScratch):
         del scene["Interface: middle/broken"]
         del scene["Material: left"]
         self.assertEqual(scene["plane"], "stress")
-        self.assertEqual(scene["Time"], {"end": "10 ms", "step": "1 ms", "theta": "0.5"})
+        self.assertEqual(
+            scene["Time"], {"end": "10 ms", "step": "1 ms", "theta": "0.5"}
+        )
         self.assertEqual(scene["Solver/tolerance"], "1e-09")
         self.assertEqual(scene["Observable: grip/at"], "0.5, 2")
         self.assertNotIn("broken", scene["Interface: middle"])
@@ -70,7 +72,8 @@ class Texts(InScratch):
         self.assertEqual(scene["Interface: middle"], {"law": "rigid", "where": "all"})
 
     def test_values(self):
-        scene = nsfd.Scene({"dimension": np.int64(3), "Mesh/cells": np.array([8, 4, 2])})
+        cells = np.array([8, 4, 2])
+        scene = nsfd.Scene({"dimension": np.int64(3), "Mesh/cells": cells})
         scene["Discretization"] = {"a": True, "b": np.float64(0.1), "c": (1.5, "2 mm")}
         self.assertEqual(
             scene.to_dict(),
@@ -80,8 +83,8 @@ class Texts(InScratch):
                 "Discretization": {"a": "true", "b": "0.1", "c": "1.5, 2 mm"},
             },
         )
-        for value, kind in (("1 # 2", ValueError), ("a\nb", ValueError), (None, TypeError)):
-            with self.assertRaises(kind):
+        for value in ("1 # 2", "a\nb", "a \\", None, {1, 2}):
+            with self.assertRaises((ValueError, TypeError)):
                 scene["Mesh/cells"] = value
         with self.assertRaisesRegex(TypeError, "'Mesh/cells'"):
             scene["Mesh"] = 3
@@ -124,10 +127,11 @@ class Texts(InScratch):
             lambda: scene.pop("Discretization/degree"),
             lambda: scene.pop("Discretization"),
         ):
-            with self.assertRaisesRegex(ValueError, "mode.prm', which the scene includes"):
+            with self.assertRaisesRegex(ValueError, "mode.prm', which the scene incl"):
                 change()
         scene["Study/size"] = "2 / n"
-        self.assertEqual(nsfd.Scene(scene.text, folder=scene.folder)["Study/size"], "2 / n")
+        again = nsfd.Scene(scene.text, folder=scene.folder)
+        self.assertEqual(again["Study/size"], "2 / n")
 
 
 class Folders(InScratch):
@@ -145,19 +149,17 @@ class Folders(InScratch):
         }
         scene["Time"] = {"end": "2 ms", "step": "0.1 ms"}
         scene.save(path)
-        runs = [
-            nsfd.run(path, output=self.scratch / "a"),
-            nsfd.run(nsfd.Scene(scene.text, folder=path.parent), output=self.scratch / "b"),
-        ]
+        text = nsfd.Scene(scene.text, folder=path.parent)
         changed = nsfd.Scene(path)
         changed["Output/fields every"] = "0.5 ms"
-        runs.append(nsfd.run(changed, output=self.scratch / "c"))
-        for run in runs:
+        for number, one in enumerate((path, text, changed)):
+            run = nsfd.run(one, output=self.scratch / str(number))
             # the halves fly apart by some mm, and 4 m have taken 0.5 J/m^2
             self.assertAlmostEqual(run.history["damage"][-1] / 2, 1, delta=1e-6)
         self.assertEqual(os.listdir(path.parent), ["pulled.prm"])
+        elsewhere = nsfd.Scene(scene.text, folder=self.scratch)
         with self.assertRaises(nsfd.InputError) as caught:
-            nsfd.run(nsfd.Scene(scene.text, folder=self.scratch), output=self.scratch / "d")
+            nsfd.run(elsewhere, output=self.scratch / "d")
         self.assertEqual(caught.exception.entry, "Interface: middle/curve")
 
     def test_a_folder_that_cannot_be_written_to(self):

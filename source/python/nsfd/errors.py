@@ -10,10 +10,10 @@ class Problem:
     """One message of the program about a scene.
 
     kind is "error", "warning" or "note"; file is the parameter file, the name of
-    a Scene that is no file, or "settings"; line counts from 1, None if the message is about a
-    whole file; entry is "Section/name", "name" at the top level, or the name of
-    a section, None if it is not about one; text says what is wrong, advice what
-    to write instead ("" if there is none)."""
+    a Scene that is no file, or "settings"; line counts from 1, None if the message
+    is about a whole file; entry is "Section/name", "name" at the top level, or the
+    name of a section, None if it is not about one; text says what is wrong, advice
+    what to write instead ("" if there is none)."""
 
     kind: str
     file: str
@@ -75,7 +75,7 @@ class NotSolved(Error):
 
 class Stopped(Error):
     """The run was stopped by a signal of somebody else. results are those up to
-    there; run(..., resume=True) in the same folder goes on."""
+    there, None if there was nothing yet; the same call with resume=True goes on."""
 
     def __init__(self, report, results):
         super().__init__(report)
@@ -95,7 +95,8 @@ class ProgramError(Error):
 SETTINGS = "settings"  # in the place of a file
 
 _HEAD = re.compile(
-    r"(?:(?P<file>.+?)(?::(?P<line>\d+))?: )??(?P<kind>error|warning|note): (?P<text>.*)"
+    r"(?:(?P<file>.+?)(?::(?P<line>\d+))?: )??"
+    r"(?P<kind>error|warning|note): (?P<text>.*)"
 )
 _EXCERPT = re.compile(r" *\d* \| (?P<code>.*)")
 _MISSING = re.compile(r"`(.+)` is missing in (?:section `(.+)`|the top level)")

@@ -39,7 +39,9 @@ class Grid:
     shape. point_data and cell_data have arrays by name, of the shape (n,) or
     (n, components). grid["stress"] looks in both."""
 
-    def __init__(self, time, points, connectivity, offsets, types, point_data, cell_data):
+    def __init__(
+        self, time, points, connectivity, offsets, types, point_data, cell_data
+    ):
         self.time, self.points = time, points
         self.connectivity, self.offsets, self.types = connectivity, offsets, types
         self.point_data, self.cell_data = point_data, cell_data
@@ -92,7 +94,7 @@ class Series(Sequence):
     def at(self, time):
         """The Grid whose time is nearest."""
         if not len(self):
-            raise IndexError("there are no fields: see 'fields every' in section Output")
+            raise IndexError("there are no fields: see section Output of the scene")
         return self[int(np.argmin(np.abs(self.times - time)))]
 
     def __repr__(self):

@@ -84,22 +84,28 @@ def call_program(scene, call, subcommand, load, more=()):
     if handed_over:
         report = report.replace(handed_over, scene.name)
         problems = [_renamed(one, handed_over, scene.name) for one in problems]
-    report = report.strip()
+    report = _without_mpirun(report).strip() or report.strip()
+    in_time = code == STOPPED and "nothing had been computed" not in report
     if interrupted:
+        reads = f"nsfd.load({str(call.output)!r}) reads what there is"
         raise KeyboardInterrupt(
-            f"stopped; what there is can be read with nsfd.load({str(call.output)!r}), "
-            "and the same call with resume=True goes on"
-            if code == STOPPED and (call.output / "run.json").exists()
+            f"stopped: {reads}, and the same call with resume=True goes on"
+            if in_time
+            else f"at the end of the run: {reads}"
+            if code == DONE
             else "ended before there was anything to store"
         )
     if code == BAD_INPUT:
         wrong = [one for one in problems if one.kind == "error"]
         if wrong:
             raise InputError(report, wrong)
-        raise FolderError(_in_python(report))
+        if _without_mpirun(report).strip():
+            raise FolderError(_in_python(report))
     if code not in (DONE, NOT_SOLVED, STOPPED):
+        # also of mpirun, which may have started nothing
         raise ProgramError(report or f"nsfd ended with {code}", code)
-    return load(call.output), code, report, problems
+    has_results = in_time or code != STOPPED
+    return load(call.output) if has_results else None, code, report, problems
 
 
 def _renamed(problem, old, new):
@@ -113,9 +119,16 @@ def _renamed(problem, old, new):
 
 def _entry_at(source, line):
     try:
-        return Scene(source if isinstance(source, Scene) else Path(source)).entry_at(line)
+        scene = source if isinstance(source, Scene) else Scene(Path(source))
+        return scene.entry_at(line)
     except OSError:
         return None
+
+
+def _without_mpirun(report):
+    """Without what mpirun adds, in frames of dashes, where a rank did not end
+    with 0."""
+    return re.sub(r"(?ms)^-{40,}$.*?^-{40,}$", "", report)
 
 
 def _in_python(report):
@@ -166,20 +179,29 @@ def _run(words, ranks, quiet):
             env=_environment(ranks, scratch),
             start_new_session=True,
         )
-        report = []
-        readers = [
-            threading.Thread(target=_show, args=(process.stdout, quiet)),
-            threading.Thread(target=lambda: report.extend(process.stderr)),
-        ]
-        for reader in readers:
-            reader.daemon = True
-            reader.start()
-        interrupted = _wait(process, ranks)
-        for reader in readers:
-            reader.join()
-        process.stdout.close()
-        process.stderr.close()
-    return process.returncode, "".join(report), interrupted
+        try:
+            report, interrupted = _watch(process, ranks, quiet)
+        except BaseException:
+            process.kill()
+            raise
+    return process.returncode, report, interrupted
+
+
+def _watch(process, ranks, quiet):
+    """Reads what it says until it has ended: (standard error, interrupted)"""
+    report = []
+    readers = [
+        threading.Thread(target=_show, args=(process.stdout, quiet), daemon=True),
+        threading.Thread(target=lambda: report.extend(process.stderr), daemon=True),
+    ]
+    for reader in readers:
+        reader.start()
+    interrupted = _wait(process, ranks)
+    for reader in readers:
+        reader.join()
+    process.stdout.close()
+    process.stderr.close()
+    return "".join(report), interrupted
 
 
 def _show(stream, quiet):

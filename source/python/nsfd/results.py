@@ -10,7 +10,7 @@ from typing import Optional
 from .errors import NotSolved, Stopped
 from .fields import read_series
 from .program import NOT_SOLVED, STOPPED, Call, call_program
-from .scene import Scene, flat_entries
+from .scene import Scene
 from .table import read_table
 
 
@@ -36,9 +36,8 @@ class Certificate(Sequence):
     def __init__(self, data):
         self.ok = bool(data.get("ok", False))
         self.verdict = data.get("verdict", "there is no certificate")
-        self._lines = [
-            CertificateLine(name, **line) for name, line in data.get("lines", {}).items()
-        ]
+        lines = data.get("lines", {})
+        self._lines = [CertificateLine(name, **line) for name, line in lines.items()]
 
     def __getitem__(self, which):
         if isinstance(which, str):
@@ -181,7 +180,8 @@ def as_scene(scene):
 def finish(loaded):
     """What call_program returns, or the exception of its exit code."""
     results, code, report, problems = loaded
-    results.problems = [one for one in problems if one.kind != "error"]
+    if results is not None:
+        results.problems = [one for one in problems if one.kind != "error"]
     if code == NOT_SOLVED:
         raise NotSolved(report, results)
     if code == STOPPED:
@@ -220,8 +220,7 @@ def run(
     program stores its state before KeyboardInterrupt is raised; a second one
     ends it as it is."""
     scene = as_scene(scene)
-    varied = {path.partition(":")[0].partition("/")[0] for path, _ in flat_entries(settings)}
-    if scene.is_study() or varied & {"Study", "Vary"}:
+    if scene.is_study() or any(path.startswith("Study") for path in settings):
         raise ValueError(
             f"the scene {scene.name!r} is a study of many runs: nsfd.study runs it"
         )

@@ -104,13 +104,13 @@ def value_text(value):
     if isinstance(value, numbers.Real):
         return repr(float(value))
     if isinstance(value, (str, os.PathLike)):
-        text = os.fspath(value)
+        text = os.fspath(value).strip()
         if "\n" in text or "#" in text or text.endswith("\\"):
             raise ValueError(
                 f"the value {text!r} cannot stand in a line: leave out line breaks, "
                 "# and a backslash at the end"
             )
-        return text.strip()
+        return text
     if isinstance(value, (list, tuple, np.ndarray)):
         return ", ".join(value_text(part) for part in value)
     raise TypeError(
@@ -211,8 +211,8 @@ class Scene(MutableMapping):
         return {**top, **sections}
 
     def entry_at(self, line):
-        """"Section/name" of the entry, or the name of the section, that stands
-        in a line (from 1) of the scene's own text; None if there is neither."""
+        """The path of the entry, or the name of the section, that stands in a
+        line (from 1) of the scene's own text; None if there is neither."""
         for one in self._statements():
             if not one.included_from and one.first < line <= one.last + 1:
                 return _path(one)
@@ -228,13 +228,9 @@ class Scene(MutableMapping):
         """The path of a file with this scene, from where the names of files in
         it are found: its own if it is unchanged, else one that is there until
         the end of the block."""
-        if self.path is not None and self.path.parent == self.folder:
-            try:
-                if _read(self.path) == self.text:
-                    yield self.path
-                    return
-            except FileNotFoundError:
-                pass
+        if self._is_file():
+            yield self.path
+            return
         try:
             stream = tempfile.NamedTemporaryFile(
                 dir=self.folder, prefix=".nsfd_", suffix=".prm"
@@ -251,6 +247,15 @@ class Scene(MutableMapping):
             stream.write(self.text.encode("utf-8", "surrogateescape"))
             stream.flush()
             yield Path(stream.name)
+
+    def _is_file(self):
+        """True if the file at path says what this scene says."""
+        return (
+            self.path is not None
+            and self.path.parent == self.folder
+            and self.path.is_file()
+            and _split_lines(_read(self.path)) == self._lines
+        )
 
     def _statements(self):
         return list(_statements(self._lines, self.folder))
@@ -389,8 +394,8 @@ def _path(statement):
 def _refuse_included(statement):
     if statement.included_from:
         raise ValueError(
-            f"{_path(statement)!r} stands in '{statement.included_from}', which the scene "
-            "includes: change it there, or for one run with a setting of nsfd.run"
+            f"{_path(statement)!r} stands in '{statement.included_from}', which the "
+            "scene includes: change it there, or for one run with a setting of nsfd.run"
         )
 
 

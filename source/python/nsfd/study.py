@@ -81,7 +81,8 @@ class Study:
         return {name: Results(self.folder / name) for name in names}
 
     def __repr__(self):
-        return f"<Study in {self.folder}: {self.data['done']} of {self.data['cases']} cases>"
+        done = f"{self.data['done']} of {self.data['cases']} cases"
+        return f"<Study in {self.folder}: {done}>"
 
 
 def _numbers(values):

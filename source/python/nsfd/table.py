@@ -56,10 +56,14 @@ def read_table(path, units=None):
     being written is left out."""
     with open(path, encoding="utf-8", newline="") as stream:
         text = stream.read()
-    text = text[: text.rfind("\n") + 1]
-    rows = list(csv.reader(text.splitlines()))
-    if not rows:
-        return Table({}, units)
-    names, body = rows[0], rows[1:]
-    columns = list(zip(*body)) if body else [()] * len(names)
-    return Table({n: _column(c) for n, c in zip(names, columns)}, units)
+    lines = text[: text.rfind("\n") + 1].splitlines()
+    names = next(csv.reader(lines), [])
+    if len(lines) < 2:
+        columns = [np.empty(0)] * len(names)
+    else:
+        try:  # a tenth of the time of the general way
+            numbers = np.loadtxt(lines[1:], delimiter=",", comments=None, ndmin=2)
+            columns = np.ascontiguousarray(numbers.T)
+        except ValueError:
+            columns = [_column(values) for values in zip(*csv.reader(lines[1:]))]
+    return Table(zip(names, columns), units)
