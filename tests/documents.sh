@@ -25,7 +25,7 @@ END
 
 find source include tests prm doc .ci -type f 2>/dev/null >"$scratch/files"
 ls >>"$scratch/files"
-find source include tests -name '*.cc' -o -name '*.h' |
+find source include tests -name '*.cc' -o -name '*.h' -o -name '*.py' |
   xargs grep -hoE '[A-Za-z_][A-Za-z0-9_]*' | sort -u >"$scratch/words"
 
 # check FILE ...: one line per fault
@@ -138,7 +138,7 @@ check() {
       }
       n = split($0, part, "`")
       for (i = 2; i <= n; i += 2) {
-        if (part[i] ~ /^[A-Za-z0-9_]+\.(cc|h|sh|prm|geo|svg|bib|awk)$/)
+        if (part[i] ~ /^[A-Za-z0-9_]+\.(cc|h|sh|py|prm|geo|svg|bib|awk)$/)
           check_name(part[i])
         else if (part[i] ~ /^([A-Z][A-Za-z0-9]+::)+[a-z_]+(\(\))?$|^[a-z_]+\(\)$|^[A-Z]+[a-z0-9]+[A-Z][A-Za-z0-9]*$/)
           check_code(part[i])
@@ -171,7 +171,7 @@ for document in doc/*.md; do
   fi
 done
 grep -rnoE 'doc/[a-z_/]+\.md' source include tests prm --include='*.cc' \
-  --include='*.h' --include='*.prm' --include='*.sh' |
+  --include='*.h' --include='*.prm' --include='*.sh' --include='*.py' |
   while IFS=: read -r file line document; do
     [ -e "$document" ] || [ "$file" = tests/documents.sh ] ||
       echo "$file:$line: no document $document"

@@ -1,6 +1,6 @@
 # cmake --install build --prefix PREFIX: the program, the headers of plug-ins,
-# the package that finds them, the shipped scenes with their meshes, and the
-# examples of plug-ins.
+# the package that finds them, the Python package, the shipped scenes with their
+# meshes, and the examples of plug-ins and scripts.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -33,3 +33,26 @@ install(FILES ${CMAKE_BINARY_DIR}/package/nsfdConfig.cmake
               ${CMAKE_CURRENT_LIST_DIR}/plug_in.cc.in
               ${CMAKE_CURRENT_LIST_DIR}/plug_in.map
         DESTINATION ${package})
+
+# Where Python of Debian looks for modules without compiled parts: below
+# /usr/local in the folder of its version, below /usr in that of all versions,
+# which is the place below any other prefix as well (and then has to be named in
+# PYTHONPATH). The prefix may still change at installation.
+set(NSFD_LOCAL_MODULES lib/python3/dist-packages)
+execute_process(
+  COMMAND /usr/bin/python3 -c
+    "import sys; print('lib/python%d.%d/dist-packages' % sys.version_info[:2])"
+  OUTPUT_VARIABLE versioned RESULT_VARIABLE status
+  OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+if(status EQUAL 0)
+  set(NSFD_LOCAL_MODULES ${versioned})
+endif()
+install(CODE "
+  set(modules lib/python3/dist-packages)
+  if(CMAKE_INSTALL_PREFIX STREQUAL \"/usr/local\")
+    set(modules ${NSFD_LOCAL_MODULES})
+  endif()
+  file(INSTALL \"${CMAKE_SOURCE_DIR}/source/python/nsfd\"
+       DESTINATION \"\${CMAKE_INSTALL_PREFIX}/\${modules}\"
+       FILES_MATCHING PATTERN *.py PATTERN __pycache__ EXCLUDE)
+")
