@@ -452,6 +452,9 @@ namespace nsfd
         row.cell = c;
         row.place = places_.of_node(c, f, j);
         row.weight = face.weights[j];
+        // a crack face that has just opened is to know what its node knew
+        row.approach = old.surface_approach[row.place];
+        row.overlap = old.surface_overlap[row.place];
         const auto [entry, is_new] = known.emplace(
             std::pair(std::size_t(active_.merged(row.node)), o), rows.size());
         if (is_new) {
@@ -462,6 +465,8 @@ namespace nsfd
           continue;
         }
         Row &same = rows[entry->second];
+        same.approach = std::max(same.approach, row.approach);
+        same.overlap = std::max(same.overlap, row.overlap);
         if (row.weight > same.weight) {
           same.place = row.place; // the rest is that of the node
           same.weight = row.weight;

@@ -2,12 +2,13 @@
 
 #include "common_balance.h"
 #include "contact_fields.h"
-#include "core/gather.h"
 #include "initial_state.h"
 #include "nonsmooth/point_law.h"
 #include "passing_bodies.h"
 #include "point_name.h"
 
+#include "contact_detection/touching_rules.h"
+#include "core/gather.h"
 #include "core/stopwatch.h"
 #include "nsfd/scene/scene_input.h"
 
@@ -103,6 +104,55 @@ namespace nsfd
         if (!old.slip_max.empty())
           old.slip_max[i] = std::max(old.slip_max[i], reach.slip);
       }
+    }
+
+    /**
+     * The two places of a point that slides turn about each other with its
+     * face, by as much as they are apart: what of an overlap comes by this is
+     * neither an approach nor a spring's.
+     */
+    template <int dim>
+    void explain_turns(const ContactPoints<dim> &contacts,
+                       const std::size_t n_mesh_points, const State &start,
+                       State &old)
+    {
+      for (std::size_t j = 0; j < n_mesh_points; ++j) {
+        const std::size_t i = contacts.mesh_point(j);
+        const double depth = -old.jump[i * dim],
+                     turned = depth + start.jump[j * dim];
+        old.approach[i] = start.approach[j];
+        if (has_impulse(old.kind[i]) && depth > 0. && turned > 0.)
+          old.approach[i] += std::min(depth, turned);
+      }
+    }
+
+    /**
+     * Broken points whose sides have slid past each other, though others of
+     * their face still hold: what keeps the distance of two places along the
+     * normal of the face is no contact there. @p weight and the result by point
+     * of the mesh.
+     */
+    template <int dim>
+    std::vector<char> slid_apart(const Discretization<dim> &discretization,
+                                 const std::vector<double> &weight,
+                                 const State &next)
+    {
+      std::vector<char> slid(discretization.points().n_points, 0);
+      for (const auto &face : discretization.points().faces) {
+        const unsigned int end = face.first + face.count;
+        double area = 0.;
+        for (unsigned int j = face.first; j < end; ++j)
+          area += weight[j];
+        const double least = inset * (dim == 2 ? area : std::sqrt(area));
+        for (unsigned int j = face.first; j < end && !face.boundary; ++j) {
+          double square = 0.;
+          for (unsigned int c = 1; c < dim; ++c)
+            square += next.jump[j * dim + c] * next.jump[j * dim + c];
+          slid[j] = next.kind[j] == PointKind::free && !next.two_sided[j] &&
+                    square > least * least;
+        }
+      }
+      return slid;
     }
   } // namespace
 
@@ -281,6 +331,7 @@ namespace nsfd
         old_.jump[i * dim + a] = value;
       }
     keep_histories(bodies_.contacts(), n, problem_, old_);
+    explain_turns(bodies_.contacts(), n, *start_, old_);
     for (std::size_t k = 0; k < rows.size(); ++k)
       for (unsigned int a = 0; a < dim; ++a)
         old_.jump[bodies_.contacts().row_point(k) * dim + a] =
@@ -398,7 +449,8 @@ namespace nsfd
     }
     erase_contacts(parts_.input, bodies_.contacts(), next);
     if (contacts_)
-      contacts_->part(next);
+      contacts_->part(
+          next, slid_apart(parts_.discretization, parts_.problem.weight, next));
   }
 
   template <int dim>

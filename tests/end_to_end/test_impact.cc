@@ -153,4 +153,53 @@ namespace end_to_end
     ASSERT_TRUE(result.completed()) << result.description();
     EXPECT_EQ(result.counter("rejected_steps"), 0.);
   }
+
+  /** A block lands with the overlap of a step and is torn apart while it rests
+      there: its new crack faces begin at nodes that know this overlap. */
+  TEST(Impact, CrackThatOpensOnAFloor)
+  {
+    const Workspace workspace;
+    const auto file = workspace.path() / "block.prm";
+    write_text(file, R"(
+set dimension = 2
+set motion    = large
+subsection Mesh
+  set type         = rectangle
+  set lower corner = -1 m, 0
+  set upper corner = 1 m, 2 m
+  set cells        = 2, 1
+end
+subsection Material: rubber
+  set model              = neo-hookean
+  set Young modulus      = 1 MPa
+  set Poisson ratio      = 0.2
+  set density            = 1000
+  set initial velocity x = 4 * x
+  set initial velocity y = -1 m/s
+end
+subsection Interface: middle
+  set where     = all
+  set law       = camacho-ortiz
+  set strength  = 20 kPa
+  set toughness = 100 J/m^2
+end
+subsection Obstacle: floor
+  set where  = all
+  set point  = 0, 0
+  set normal = 0, 1
+end
+subsection Contact: any
+end
+subsection Time
+  set scheme = moreau-jean
+  set step   = 2 ms
+  set end    = 60 ms
+end
+)");
+    const Result result = good_run(workspace, "block", {file});
+    ASSERT_EQ(result.number("fragments"), 2.) << result.description();
+    EXPECT_EQ(result.counter("penetration_excess"), 0.);
+    expect_below("overlap", result.number("penetration_max"),
+                 2e-3 * 1. * (1. + 1e-3), "a step times the approach speed");
+  }
 } // namespace end_to_end

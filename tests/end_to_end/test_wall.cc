@@ -98,6 +98,11 @@ namespace end_to_end::test_wall
                         Seed{27, "large moreau-jean breakable alone"},
                         Seed{30057, "large moreau-jean breakable alone"},
                         Seed{63, "large moreau-jean breakable contact"},
+                        // broken points that slide beside one that holds
+                        Seed{30264, "large moreau-jean breakable contact"},
+                        // softening points that slide and turn with their face
+                        Seed{30346, "large moreau-jean breakable contact"},
+                        Seed{30388, "large moreau-jean breakable contact"},
                         Seed{30016, "large moreau-jean breakable contact"},
                         Seed{21, "large moreau-jean elastic contact"},
                         Seed{23, "large moreau-jean mixed contact"},
