@@ -221,6 +221,7 @@ namespace nsfd
             x[d] += cell.trace(slot.slot * dim + d, j) * nodes[first + j];
         middle_.set_rigid_trace(b, s, x - centre);
       }
+      rigid_motions_.supports().project(b, body.trace);
       return;
     }
     const unsigned int c = mover.cells[0], k = cells.class_of[c];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "body_layout.h"
+#include "rigid_supports.h"
 
 #include "core/communicator.h"
 
@@ -23,9 +24,11 @@ namespace nsfd
                  const BodyLayout<dim> &layout,
                  const Communicator &communicator)
         : input_(input), discretization_(discretization), layout_(layout),
-          all_(communicator)
+          all_(communicator), supports_(input, discretization, layout)
     {
     }
+
+    const RigidSupports<dim> &supports() const { return supports_; }
 
     /** What @p state says of @p body. */
     RigidState of(const State &state, const MovingBody &body) const
@@ -67,5 +70,6 @@ namespace nsfd
     const Discretization<dim> &discretization_;
     const BodyLayout<dim> &layout_;
     const Communicator &all_;
+    const RigidSupports<dim> supports_;
   };
 } // namespace nsfd

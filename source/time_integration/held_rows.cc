@@ -94,6 +94,11 @@ namespace nsfd
         }
     if (!is_impact_)
       set_supports(old, problem);
+    bodies_.rigid_motions().supports().project(
+        [&](const std::size_t point, const unsigned int c) -> double & {
+          return problem
+              .given_velocity[bodies_.contacts().mesh_point(point) * dim + c];
+        });
   }
 
   /**

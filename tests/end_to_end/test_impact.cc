@@ -202,4 +202,67 @@ end
     expect_below("overlap", result.number("penetration_max"),
                  2e-3 * 1. * (1. + 1e-3), "a step times the approach speed");
   }
+
+  /**
+   * A rigid square of side a that is driven along its top side and may turn. At
+   * once the side moves with v: J (1/m + y^2/I) = v, V = 0.4 v. Beside the side
+   * nothing works on it: in its frame the kinetic energy stays m v^2 (0.6^2 +
+   * 1.2^2/6) / 2 = 0.3 m v^2, however far it has turned.
+   */
+  TEST(Impact, RigidBlockDrivenAlongItsSide)
+  {
+    const Workspace workspace;
+    const auto file = workspace.path() / "square.prm";
+    write_text(file, R"(
+set dimension = 2
+set motion    = large
+subsection Mesh
+  set type         = rectangle
+  set lower corner = 0, 0
+  set upper corner = 1 m, 1 m
+  set cells        = 3, 2
+end
+subsection Material: stone
+  set model   = rigid
+  set bodies  = connected
+  set density = 1000
+end
+subsection Interface: inside
+  set where = all
+  set law   = rigid
+end
+subsection Boundary: top
+  set velocity x = 2 m/s
+end
+subsection Time
+  set scheme = moreau-jean
+  set step   = 10 ms
+  set end    = 2 s
+end
+)");
+    const Result result = good_run(workspace, "square", {file});
+    const double m = 1000., v = 2., wanted = 0.3 * m * v * v;
+    EXPECT_EQ(result.counter("rejected_steps"), 0.);
+    // momentum along the side: what moves it does the work v P in a step, half
+    // of that in the first one, which begins at rest
+    const auto &kinetic = result.history["kinetic"],
+               &work = result.history["work"];
+    double least = 1., most = 0., first = 0., drift = 0.;
+    for (std::size_t k = 1; k < work.size(); ++k) {
+      const double speed = (work[k] + work[1]) / (v * m);
+      least = std::min(least, speed / v);
+      most = std::max(most, speed / v);
+      const double energy = kinetic[k] - v * m * speed + 0.5 * m * v * v;
+      if (k == 1)
+        first = energy;
+      drift = std::max(drift, std::abs(energy - first));
+    }
+    expect_below("energy in the frame of the side",
+                 std::abs(first / wanted - 1.), 1.5e-4,
+                 "(h spin / 2)^2 of the first step");
+    expect_below("its drift", drift / wanted, 1e-9, "theta = 1/2");
+    expect_below("speed at once", std::abs(2. * work[1] / (v * v * m) - 0.4),
+                 1e-3, "at the middle of a step of 10 ms");
+    EXPECT_GT(most - least, 0.5) << "it has swung to and fro";
+  }
 } // namespace end_to_end

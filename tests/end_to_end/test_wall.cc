@@ -100,6 +100,8 @@ namespace end_to_end::test_wall
                         Seed{63, "large moreau-jean breakable contact"},
                         // broken points that slide beside one that holds
                         Seed{30264, "large moreau-jean breakable contact"},
+                        // a rigid block that is driven along its top
+                        Seed{30370, "large moreau-jean mixed contact"},
                         // softening points that slide and turn with their face
                         Seed{30346, "large moreau-jean breakable contact"},
                         Seed{30388, "large moreau-jean breakable contact"},
