@@ -137,7 +137,7 @@ namespace nsfd
   {
     if (discretization.input().large_motion)
       return std::make_unique<FiniteForces<dim>>(discretization, mesh,
-                                                 std::move(front));
+                                                 std::move(front), ghosts);
     auto forces =
         elastic_forces(discretization, mesh, std::move(front), ghosts);
     if (discretization.input().has_viscous_bodies())

@@ -28,8 +28,10 @@ namespace nsfd
   class FiniteForces final : public CellForces<dim>
   {
   public:
+    /** @p ghosts of the cells, if there may be some, outlive it. */
     FiniteForces(const Discretization<dim> &discretization,
-                 const JoinedMesh<dim> &mesh, FrontViscosity front);
+                 const JoinedMesh<dim> &mesh, FrontViscosity front,
+                 const GhostCells *ghosts = nullptr);
     ~FiniteForces() override;
 
     void set_forces(CornerGroups<dim> &groups) override;
@@ -44,13 +46,15 @@ namespace nsfd
     std::array<double, dim> traction(const StrengthSites<dim> &sites,
                                      std::size_t site) const override;
 
-    // all of the last forces
+    // all of the last forces; what is summed is 0 of ghosts
 
     /** By cell, J. */
     const std::vector<double> &stored() const { return stored_; }
-    /** Power of the front viscosity against @p velocity of the groups, W. */
-    double front_power(const CornerGroups<dim> &groups,
-                       const std::vector<double> &velocity) const;
+    /** Terms of the power of the front viscosity against each of @p velocities
+        of the groups, one row after the other, W. */
+    std::vector<double> front_powers(
+        const CornerGroups<dim> &groups,
+        const std::vector<const std::vector<double> *> &velocities) const;
     /** Rows n, t1, t2 at a point between two cells. */
     std::array<double, dim * dim> frame(std::size_t point) const;
     /** A cell that is turned inside out, or has no stress; -1: none. */
@@ -98,6 +102,7 @@ namespace nsfd
 
     const Discretization<dim> &discretization_;
     const JoinedMesh<dim> &mesh_;
+    const GhostCells *const ghosts_; ///< null: there are none
     const bool differ_;
     std::vector<Tables> tables_;
     std::vector<std::unique_ptr<const Hyperelastic<dim>>> materials_;

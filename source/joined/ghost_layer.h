@@ -47,14 +47,26 @@ namespace nsfd
     /** Unknowns: dim values per node of a cell. */
     std::vector<double> spread_unknowns(const std::vector<double> &own) const;
     std::vector<double> own_unknowns(const std::vector<double> &all) const;
+    /** State::material_history. */
+    std::vector<double> spread_histories(const std::vector<double> &own) const;
+    std::vector<double> own_histories(const std::vector<double> &all) const;
 
-    /** What spread_points() and spread_unknowns() do not know. Collective. */
+    /** What the functions above that spread do not know. Collective. */
     template <typename T>
     void fetch_points(unsigned int width, std::vector<T> &all) const;
     void fetch_unknowns(std::vector<double> &all) const;
+    void fetch_histories(std::vector<double> &all) const;
 
   private:
+    /// where the values of a cell begin, by cell
+    using First = std::vector<std::size_t>;
+
     void match_points();
+    std::vector<double> spread(const First &of_own, const First &of_all,
+                               const std::vector<double> &own) const;
+    std::vector<double> own_of(const First &of_own, const First &of_all,
+                               const std::vector<double> &all) const;
+    void fetch(const First &of_all, std::vector<double> &all) const;
 
     const Communicator &communicator_;
     const Discretization<dim> &own_;

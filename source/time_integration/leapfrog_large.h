@@ -81,6 +81,7 @@ namespace nsfd
       return contacts_ ? contacts_->missed(groups) : std::nullopt;
     }
 
+    /** Collective. */
     double stored() const { return communicator_.sum(forces_.stored()); }
     /** Before the forces at the end of a step of length @p h, which may not be:
         see inverted(). */
@@ -106,13 +107,17 @@ namespace nsfd
     bool is_too_long(double largest) const;
     /** No cell was well in a step of this length. */
     void ask_for_shorter_steps() { stiffening_ *= 4.; }
-    /** Where a cell is turned inside out; empty: nowhere. */
+    /** Where a cell is turned inside out, on all ranks the same; empty:
+        nowhere. Collective. */
     std::string inverted() const;
     void show(State &state) const;
     void fill_counters(std::map<std::string, double> &counters) const;
     void serialize(Archive &archive);
 
   private:
+    std::vector<double> front_powers(
+        const CornerGroups<dim> &groups,
+        const std::vector<const std::vector<double> *> &velocities) const;
     void take_front(double held, LeapfrogEnergies &energies);
     std::vector<std::size_t>
     nodes_of_groups(const LeapfrogPoints<dim> &points,
