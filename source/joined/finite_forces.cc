@@ -24,9 +24,11 @@ namespace nsfd
   FiniteForces<dim>::FiniteForces(const Discretization<dim> &discretization,
                                   const JoinedMesh<dim> &mesh,
                                   FrontViscosity front,
-                                  const GhostCells *ghosts)
+                                  const GhostCells *ghosts,
+                                  const GhostCells *divided)
       : CellForces<dim>(std::move(front)), discretization_(discretization),
-        mesh_(mesh), ghosts_(ghosts), differ_(discretization.cells().differ()),
+        mesh_(mesh), ghosts_(ghosts), divided_(divided),
+        differ_(discretization.cells().differ()),
         sides_(discretization.points().n_points),
         displacement_(mesh.n_corners() * dim), forces_(mesh.n_corners() * dim),
         stored_(discretization.bodies().size()),
@@ -83,6 +85,8 @@ namespace nsfd
         --side.first; // -1: none
     if (this->front_.acts())
       front_forces_.assign(forces_.size(), 0.);
+    if (divided_)
+      volumes_.resize(stored_.size());
     if (input.has_history()) {
       dilatations_.resize(stored_.size());
       taken_.resize(2 * stored_.size());
@@ -161,6 +165,8 @@ namespace nsfd
     const auto [volume, now] = histories_.any() && histories_.of(cell)
                                    ? set_flowing_cell(cell, f)
                                    : set_elastic_cell(cell, f);
+    if (divided_)
+      volumes_[cell] = {volume, now};
     if (!this->front_.acts() || inverted_ == int(cell))
       return;
     this->front_.update(cell, now / volume - 1., volume);
@@ -186,7 +192,10 @@ namespace nsfd
     inverted_ = -1;
     groups.scatter(groups.displacement, displacement_);
     for (std::size_t cell = 0; cell < stored_.size(); ++cell)
-      set_cell(cell);
+      if (!divided_ || !divided_->is_ghost(cell))
+        set_cell(cell);
+    if (divided_)
+      share_cells();
     histories_.end_step();
     const std::size_t n_cells = stored_.size();
     for (std::size_t cell = 0; ghosts_ && cell < n_cells; ++cell)
@@ -373,7 +382,7 @@ namespace nsfd
     double most = 1.;
     for (std::size_t cell = 0; cell < stored_.size(); ++cell) {
       const Tables &here = tables(cell);
-      if (is_rigid(cell))
+      if (is_rigid(cell) || (divided_ && divided_->is_ghost(cell)))
         continue;
       if (histories_.any() && histories_.of(cell)) {
         most = std::max(most, flowing_stiffening(cell));
@@ -392,7 +401,7 @@ namespace nsfd
                                norm(S) / material(cell).modulus());
       }
     }
-    return most;
+    return divided_ ? divided_->largest(most) : most;
   }
 
   template class FiniteForces<2>;

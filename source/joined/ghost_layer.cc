@@ -79,10 +79,30 @@ namespace nsfd
   GhostLayer<dim>::GhostLayer(const Communicator &communicator,
                               const Discretization<dim> &own,
                               std::unique_ptr<const Discretization<dim>> all)
-      : communicator_(communicator), own_(own), all_(std::move(all))
+      : communicator_(communicator), own_(own), all_(std::move(all)),
+        is_whole_(false)
+  {
+    match_cells(all_->cells().global_cell);
+    match_points();
+  }
+
+  template <int dim>
+  GhostLayer<dim>::GhostLayer(const Communicator &communicator,
+                              const Discretization<dim> &own,
+                              std::unique_ptr<const Discretization<dim>> whole,
+                              const std::vector<unsigned long long> &numbers)
+      : communicator_(communicator), own_(own), all_(std::move(whole)),
+        is_whole_(true)
+  {
+    match_cells(numbers);
+    match_points();
+  }
+
+  template <int dim>
+  void
+  GhostLayer<dim>::match_cells(const std::vector<unsigned long long> &numbers)
   {
     // both lists of cells are in the same order
-    const auto &numbers = all_->cells().global_cell;
     const auto &mine = own_.cells().global_cell;
     std::vector<std::uint8_t> ghost(numbers.size(), 1);
     for (std::size_t b = 0; b < numbers.size() && cell_.size() < mine.size();
@@ -91,8 +111,7 @@ namespace nsfd
         ghost[b] = 0;
         cell_.push_back(b);
       }
-    cells_.emplace(communicator, numbers, std::move(ghost));
-    match_points();
+    cells_.emplace(communicator_, numbers, std::move(ghost));
   }
 
   template <int dim>

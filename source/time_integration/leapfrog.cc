@@ -22,20 +22,21 @@ namespace nsfd
                           const Discretization<dim> &discretization,
                           const Communicator &communicator,
                           std::unique_ptr<const GhostLayer<dim>> layer)
-      : input_(input), communicator_(communicator),
-        ghosts_(communicator, discretization, std::move(layer)),
+      : input_(input), ghosts_(communicator, discretization, std::move(layer)),
+        communicator_(ghosts_.communicator()),
         discretization_(ghosts_.discretization()),
         all_(point_constants(input, discretization_)),
         own_(ghosts_.layer() ? std::make_unique<const OneStepProblem<dim>>(
                                    point_constants(input, discretization))
                              : nullptr),
         mesh_(discretization_, ghosts_.cells()),
-        hanging_(discretization_, mesh_, ghosts_.layer()),
+        hanging_(discretization_, mesh_,
+                 ghosts_.cells() ? ghosts_.layer() : nullptr),
         forces_(make_cell_forces(discretization_, mesh_,
                                  FrontViscosity(discretization_,
                                                 input.front_viscosity(),
                                                 ghosts_.cells()),
-                                 ghosts_.cells())),
+                                 ghosts_.cells(), ghosts_.divided())),
         faces_(discretization_, all_, hanging_),
         supports_(input, discretization_, mesh_),
         points_(discretization_, mesh_, all_),
@@ -48,7 +49,7 @@ namespace nsfd
     ghosts_.set_mesh(mesh_, hanging_);
     if (auto *finite = dynamic_cast<FiniteForces<dim> *>(forces_.get()))
       large_ = std::make_unique<LeapfrogLarge<dim>>(
-          input, discretization_, mesh_, all_, communicator, *finite);
+          input, discretization_, mesh_, all_, communicator_, *finite);
     if (!hanging_.any() && !has_rigid_cells(input))
       return;
     State state = ghosts_.with(initial_state());
@@ -60,9 +61,9 @@ namespace nsfd
     const auto intact = joined_points(discretization_, state);
     CornerGroups<dim> groups(mesh_, intact);
     groups.gather(state.displacement, groups.displacement);
-    RigidGroups<dim> rigid(discretization_, mesh_, communicator,
+    RigidGroups<dim> rigid(discretization_, mesh_, communicator_,
                            ghosts_.cells(),
-                           rigid_clusters(discretization_, mesh_, communicator,
+                           rigid_clusters(discretization_, mesh_, communicator_,
                                           ghosts_.cells(), intact));
     if (large_)
       rigid.set_places(state);

@@ -149,6 +149,7 @@ namespace nsfd
     state.velocity = layer->own_unknowns(state.velocity);
     state.material_history = layer->own_histories(state.material_history);
     state.bond_traction = layer->own_points(state.bond_traction, dim);
+    ghosts_.count_once(state);
   }
 
   template <int dim>
