@@ -66,10 +66,10 @@ end
           "motion=large",
           "Material: bulk/model=" + model,
           "Material: bulk/Young modulus=3 GPa",
-          "Boundary: left/velocity x=if(t < 30 ns, -60 m/s, 60 m/s)",
-          "Boundary: right/velocity x=if(t < 30 ns, 60 m/s, -60 m/s)",
-          "Time/end=60 ns",
-          "Output/fields every=15 ns"};
+          "Boundary: left/velocity x=if(t < 25 ns, -60 m/s, 60 m/s)",
+          "Boundary: right/velocity x=if(t < 25 ns, 60 m/s, -60 m/s)",
+          "Time/end=40 ns",
+          "Output/fields every=10 ns"};
       set.insert(set.end(), more.begin(), more.end());
       return set;
     }
@@ -144,7 +144,7 @@ end
         {"large_triangles",
          large("saint-venant kirchhoff",
                {"dimension=2", "Mesh/type=crossed triangles", "Mesh/cells=6, 6",
-                distorted, "gravity=0, -1e9",
+                distorted, "Loads/gravity=0, -1e9",
                 "Boundary: top/traction x=20 MPa"}),
          false,
          {2, 4}},
@@ -152,14 +152,16 @@ end
          large("j2 plastic",
                {"dimension=3", "Mesh/type=brick", origin, corner,
                 "Mesh/cells=4, 2, 2", "Material: bulk/yield stress=100 MPa",
-                "Material: bulk/isotropic hardening modulus=1 GPa"}),
+                "Material: bulk/isotropic hardening modulus=1 GPa",
+                "Interface: all/strength=120 MPa"}),
          false,
          {2, 4}},
         {"large_flowing_tetrahedra",
          large("viscoplastic",
                {"dimension=3", "Mesh/type=tetrahedra", origin, corner,
                 "Mesh/cells=3, 2, 2", "Material: bulk/yield stress=100 MPa",
-                "Material: bulk/viscosity=0.1 Pa*s", "Time/end=40 ns"}),
+                "Material: bulk/viscosity=0.1 Pa*s",
+                "Interface: all/strength=120 MPa"}),
          false,
          {2, 4}},
         // contacts, rigid bodies, obstacles: only the forces are divided
@@ -175,7 +177,10 @@ end
          {"Body: plate/cells=4, 20", "Time/end=20 us"},
          true},
         {"taylor_bar",
-         {"Mesh/file=../meshes/taylor_bar_coarse.geo", "Time/end=1 us"},
+         {"Mesh/file=" +
+              (quickstart().parent_path() / "meshes/taylor_bar_coarse.geo")
+                  .string(),
+          "Time/end=1 us"},
          true},
         {"spall_square", {"Mesh/cells=60, 1"}, true},
         {"plate_impact", {"Mesh/cells=80, 1"}, true},
