@@ -93,9 +93,12 @@ namespace nsfd
       starts_cold_ = true;
       throw StepRejected(fmt::format(
           "the step of {:.4g} s at t = {:.6g} s would give {:.3g} J to `{}`, "
-          "{:.1e} of the largest energy; worst face {}",
+          "{:.1e} of the largest energy{}",
           next.time - old.time, old.time, given, name_of(line),
-          given / changes.scale, describe_(changes.worst[k])));
+          given / changes.scale,
+          changes.worst[k] == LineChanges::no_point
+              ? ""
+              : "; worst face " + describe_(changes.worst[k])));
     }
   }
 } // namespace nsfd
