@@ -172,6 +172,9 @@ namespace nsfd
     front_taken_ = -(h + last) / 4. * (front_before + front_after);
     // of elastic forces alone, where a step changes its length
     energies.numerical -= (h - last) / 4. * (front_after - front_before);
+    energies.change -= front_after - front_before;
+    halved_ =
+        (h / 2. - last) / 4. * (h / 2. + last) / (h + last) * energies.change;
     energies.power -= front_after;
     energies.viscous += flow_[1];
     energies.plastic = flow_[0];
@@ -269,17 +272,19 @@ namespace nsfd
    * The error of a step, of third order, may go on for a few steps before it
    * comes back with the other sign: a fifth of what a run may give. Sooner is
    * better, since what a change of the step takes or gives grows with the
-   * square of the forces. A cell that is crushed is far stiffer than at rest:
-   * no step would be short enough, and the certificate says what it gave, if
-   * that is no more than what a run may give.
+   * square of the forces; where already half of the step would give by that
+   * what a run may not, it is none the better. A cell that is crushed is far
+   * stiffer than at rest: no step would be short enough, and the certificate
+   * says what it gave, if that is no more than what a run may give.
    */
   template <int dim>
   bool LeapfrogLarge<dim>::is_too_long(const double largest) const
   {
     constexpr double most_of_step = 2e-4, of_crushed = 64.;
-    return (stiffening_ < of_crushed &&
+    const double most = most_of_large_motion * largest;
+    return (stiffening_ < of_crushed && halved_ > -most &&
             std::abs(bulk_) > most_of_step * largest) ||
-           bulk_ < -most_of_large_motion * largest;
+           bulk_ < -most;
   }
 
   template <int dim>

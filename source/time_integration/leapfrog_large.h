@@ -136,6 +136,7 @@ namespace nsfd
     double front_held_ = 0.;  ///< of the kinetic energy, by the same, J
     /// what the last forces have changed, as it was before them
     std::tuple<double, double, double, double, std::array<double, 2>> before_{};
+    double halved_ = 0.; ///< numerical of the step if it were half as long, J
     std::array<double, 2> flow_{};    ///< plastic and viscous, likewise, J
     double stored_ = 0., power_ = 0.; ///< of the step
     double stiffening_ = 1., way_ = 0.;
