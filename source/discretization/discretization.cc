@@ -193,7 +193,7 @@ namespace nsfd
     crossing_time_ = communicator.min(crossing);
     if (crossing_time_ == std::numeric_limits<double>::max())
       crossing_time_ = 0.;
-    if (input.large_motion)
+    if (input.has_body_table())
       body_table_ = std::make_unique<BodyTable>(
           make_body_table(input, triangulation, materials));
   }

@@ -97,7 +97,7 @@ namespace nsfd
     /** The same; such faces have no points. */
     const std::vector<InnerFace> &inner_faces() const { return inner_faces_; }
 
-    /** Of all ranks; of scenes with large motions only. */
+    /** Of all ranks, where SceneInput::has_body_table(). */
     const BodyTable &body_table() const { return *body_table_; }
 
     /**
@@ -168,7 +168,7 @@ namespace nsfd
     std::vector<int> springs_inside_; ///< by body; empty: none anywhere
     std::vector<ObstacleFace> obstacle_faces_;
     std::vector<InnerFace> inner_faces_;
-    std::unique_ptr<const BodyTable> body_table_; ///< of large motions
+    std::unique_ptr<const BodyTable> body_table_; ///< or null
     std::unique_ptr<const Loads<dim>> loads_;
     double crossing_time_ = 0., cell_size_ = 0., extent_ = 0.;
     std::vector<unsigned int> driven_;

@@ -133,11 +133,11 @@ namespace nsfd
   std::unique_ptr<CellForces<dim>>
   make_cell_forces(const Discretization<dim> &discretization,
                    const JoinedMesh<dim> &mesh, FrontViscosity front,
-                   const GhostCells *ghosts)
+                   const GhostCells *ghosts, const GhostCells *divided)
   {
     if (discretization.input().large_motion)
-      return std::make_unique<FiniteForces<dim>>(discretization, mesh,
-                                                 std::move(front));
+      return std::make_unique<FiniteForces<dim>>(
+          discretization, mesh, std::move(front), ghosts, divided);
     auto forces =
         elastic_forces(discretization, mesh, std::move(front), ghosts);
     if (discretization.input().has_viscous_bodies())
@@ -150,8 +150,8 @@ namespace nsfd
   template class BlockForces<3>;
   template std::unique_ptr<CellForces<2>>
   make_cell_forces(const Discretization<2> &, const JoinedMesh<2> &,
-                   FrontViscosity, const GhostCells *);
+                   FrontViscosity, const GhostCells *, const GhostCells *);
   template std::unique_ptr<CellForces<3>>
   make_cell_forces(const Discretization<3> &, const JoinedMesh<3> &,
-                   FrontViscosity, const GhostCells *);
+                   FrontViscosity, const GhostCells *, const GhostCells *);
 } // namespace nsfd

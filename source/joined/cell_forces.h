@@ -60,11 +60,12 @@ namespace nsfd
    * If all materials are isotropic and not graded, constant strain on
    * simplices of degree 1 and sum factorisation on quads and hexes; the blocks
    * of the bodies else: on all ranks alike. @p ghosts of the cells, if there
-   * may be some.
+   * may be some, and @p divided as in FiniteForces.
    */
   template <int dim>
   std::unique_ptr<CellForces<dim>>
   make_cell_forces(const Discretization<dim> &discretization,
                    const JoinedMesh<dim> &mesh, FrontViscosity front,
-                   const GhostCells *ghosts = nullptr);
+                   const GhostCells *ghosts = nullptr,
+                   const GhostCells *divided = nullptr);
 } // namespace nsfd

@@ -20,13 +20,13 @@ namespace nsfd
                                ? m.model->template history_dependent<dim>(
                                      m, true, input.plane_stress)
                                : nullptr);
-    std::size_t n_points = 0;
+    std::size_t n = 0;
     for (std::size_t cell = 0; any() && cell + 1 < first_.size(); ++cell) {
-      first_point_.push_back(n_points);
+      first_point_.push_back(n);
       if (of(cell))
-        n_points += (first_[cell + 1] - first_[cell]) / of(cell)->n_history();
+        n += n_points(cell);
     }
-    strains_.resize(n_points);
+    strains_.resize(n);
     now_ = at_rest();
   }
 
@@ -124,6 +124,34 @@ namespace nsfd
       return material.state(C, &now_[at], S, energy);
     return material.step(way, false, step, history.data()) &&
            material.state(C, history.data(), S, energy);
+  }
+
+  template <int dim>
+  void CellHistories<dim>::pack(const std::size_t cell, double *values) const
+  {
+    if (!of(cell))
+      return;
+    values = std::copy(now_.begin() + long(first_[cell]),
+                       now_.begin() + long(first_[cell + 1]), values);
+    for (std::size_t q = 0; q < n_points(cell); ++q) {
+      const Voigt<dim> &strain = strains_[first_point_[cell] + q];
+      values = std::copy(strain.begin(), strain.end(), values);
+    }
+  }
+
+  template <int dim>
+  void CellHistories<dim>::unpack(const std::size_t cell, const double *values)
+  {
+    if (!of(cell))
+      return;
+    const std::size_t n = first_[cell + 1] - first_[cell];
+    std::copy_n(values, n, now_.begin() + long(first_[cell]));
+    values += n;
+    for (std::size_t q = 0; q < n_points(cell); ++q) {
+      Voigt<dim> &strain = strains_[first_point_[cell] + q];
+      std::copy_n(values, strain.size(), strain.begin());
+      values += strain.size();
+    }
   }
 
   template class CellHistories<2>;

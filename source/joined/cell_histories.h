@@ -58,7 +58,22 @@ namespace nsfd
     bool beside(std::size_t cell, unsigned int q, const Voigt<dim> &C,
                 Voigt<dim> &S) const;
 
+    // what a cell keeps and where it was strained to, for other ranks
+
+    std::size_t n_numbers(const std::size_t cell) const
+    {
+      return of(cell) ? first_[cell + 1] - first_[cell] +
+                            n_points(cell) * Voigt<dim>().size()
+                      : 0;
+    }
+    void pack(std::size_t cell, double *values) const;
+    void unpack(std::size_t cell, const double *values);
+
   private:
+    std::size_t n_points(const std::size_t cell) const
+    {
+      return (first_[cell + 1] - first_[cell]) / of(cell)->n_history();
+    }
     std::size_t place(std::size_t cell, unsigned int q) const;
 
     const Discretization<dim> &discretization_;

@@ -23,9 +23,12 @@ namespace nsfd
   template <int dim>
   FiniteForces<dim>::FiniteForces(const Discretization<dim> &discretization,
                                   const JoinedMesh<dim> &mesh,
-                                  FrontViscosity front)
+                                  FrontViscosity front,
+                                  const GhostCells *ghosts,
+                                  const GhostCells *divided)
       : CellForces<dim>(std::move(front)), discretization_(discretization),
-        mesh_(mesh), differ_(discretization.cells().differ()),
+        mesh_(mesh), ghosts_(ghosts), divided_(divided),
+        differ_(discretization.cells().differ()),
         sides_(discretization.points().n_points),
         displacement_(mesh.n_corners() * dim), forces_(mesh.n_corners() * dim),
         stored_(discretization.bodies().size()),
@@ -82,7 +85,9 @@ namespace nsfd
         --side.first; // -1: none
     if (this->front_.acts())
       front_forces_.assign(forces_.size(), 0.);
-    if (histories_.any()) {
+    if (divided_)
+      volumes_.resize(stored_.size());
+    if (input.has_history()) {
       dilatations_.resize(stored_.size());
       taken_.resize(2 * stored_.size());
     }
@@ -160,6 +165,8 @@ namespace nsfd
     const auto [volume, now] = histories_.any() && histories_.of(cell)
                                    ? set_flowing_cell(cell, f)
                                    : set_elastic_cell(cell, f);
+    if (divided_)
+      volumes_[cell] = {volume, now};
     if (!this->front_.acts() || inverted_ == int(cell))
       return;
     this->front_.update(cell, now / volume - 1., volume);
@@ -185,8 +192,18 @@ namespace nsfd
     inverted_ = -1;
     groups.scatter(groups.displacement, displacement_);
     for (std::size_t cell = 0; cell < stored_.size(); ++cell)
-      set_cell(cell);
+      if (!divided_ || !divided_->is_ghost(cell))
+        set_cell(cell);
+    if (divided_)
+      share_cells();
     histories_.end_step();
+    const std::size_t n_cells = stored_.size();
+    for (std::size_t cell = 0; ghosts_ && cell < n_cells; ++cell)
+      if (ghosts_->is_ghost(cell)) {
+        stored_[cell] = 0.;
+        if (!taken_.empty())
+          taken_[cell] = taken_[n_cells + cell] = 0.;
+      }
     std::fill(groups.force.begin(), groups.force.end(), 0.);
     for (std::size_t i = 0; i < mesh_.n_corners(); ++i)
       for (unsigned int c = 0; c < dim; ++c)
@@ -204,15 +221,24 @@ namespace nsfd
   }
 
   template <int dim>
-  double
-  FiniteForces<dim>::front_power(const CornerGroups<dim> &groups,
-                                 const std::vector<double> &velocity) const
+  std::vector<double> FiniteForces<dim>::front_powers(
+      const CornerGroups<dim> &groups,
+      const std::vector<const std::vector<double> *> &velocities) const
   {
-    double sum = 0.;
-    for (std::size_t k = 0; k < front_forces_.size(); ++k)
-      if (front_forces_[k] != 0.)
-        sum += front_forces_[k] * velocity[groups.of(k / dim) * dim + k % dim];
-    return sum;
+    std::vector<std::size_t> acting;
+    const auto &first = discretization_.bodies().first_dof;
+    for (std::size_t cell = 0; cell < stored_.size(); ++cell)
+      if (!ghosts_ || !ghosts_->is_ghost(cell))
+        for (std::size_t k = first[cell]; k < first[cell + 1]; ++k)
+          if (front_forces_[k] != 0.)
+            acting.push_back(k);
+    std::vector<double> terms;
+    terms.reserve(acting.size() * velocities.size());
+    for (const auto *velocity : velocities)
+      for (const std::size_t k : acting)
+        terms.push_back(front_forces_[k] *
+                        (*velocity)[groups.of(k / dim) * dim + k % dim]);
+    return terms;
   }
 
   template <int dim>
@@ -356,7 +382,7 @@ namespace nsfd
     double most = 1.;
     for (std::size_t cell = 0; cell < stored_.size(); ++cell) {
       const Tables &here = tables(cell);
-      if (is_rigid(cell))
+      if (is_rigid(cell) || (divided_ && divided_->is_ghost(cell)))
         continue;
       if (histories_.any() && histories_.of(cell)) {
         most = std::max(most, flowing_stiffening(cell));
@@ -375,7 +401,7 @@ namespace nsfd
                                norm(S) / material(cell).modulus());
       }
     }
-    return most;
+    return divided_ ? divided_->largest(most) : most;
   }
 
   template class FiniteForces<2>;

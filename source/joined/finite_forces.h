@@ -23,13 +23,20 @@ namespace nsfd
    *
    *   U = sum_q JxW_q W(C), C = (theta/J)^(2/dim) F^T F,
    *   theta = sum_q JxW_q J_q / sum_q JxW_q
+   *
+   * Where every rank has all cells each computes its own, and gets those of the
+   * others from their ranks.
    */
   template <int dim>
   class FiniteForces final : public CellForces<dim>
   {
   public:
+    /** @p ghosts of the cells, if there may be some, or all cells of other
+        ranks, which are @p divided, outlive it. */
     FiniteForces(const Discretization<dim> &discretization,
-                 const JoinedMesh<dim> &mesh, FrontViscosity front);
+                 const JoinedMesh<dim> &mesh, FrontViscosity front,
+                 const GhostCells *ghosts = nullptr,
+                 const GhostCells *divided = nullptr);
     ~FiniteForces() override;
 
     void set_forces(CornerGroups<dim> &groups) override;
@@ -44,20 +51,23 @@ namespace nsfd
     std::array<double, dim> traction(const StrengthSites<dim> &sites,
                                      std::size_t site) const override;
 
-    // all of the last forces
+    // all of the last forces; what is summed is 0 of ghosts
 
     /** By cell, J. */
     const std::vector<double> &stored() const { return stored_; }
-    /** Power of the front viscosity against @p velocity of the groups, W. */
-    double front_power(const CornerGroups<dim> &groups,
-                       const std::vector<double> &velocity) const;
+    /** Terms of the power of the front viscosity against each of @p velocities
+        of the groups, one row after the other, W. */
+    std::vector<double> front_powers(
+        const CornerGroups<dim> &groups,
+        const std::vector<const std::vector<double> *> &velocities) const;
     /** Rows n, t1, t2 at a point between two cells. */
     std::array<double, dim * dim> frame(std::size_t point) const;
     /** A cell that is turned inside out, or has no stress; -1: none. */
     int inverted() const { return inverted_; }
     /**
      * How much higher the square of the largest frequency of a cell may be
-     * than at rest: an estimate that is 1 there.
+     * than at rest: an estimate that is 1 there. Of all cells that are divided,
+     * collective then; else of those that are here.
      */
     double stiffening() const;
     /** What flow took on the way to the places of the last forces, J: by cell
@@ -95,9 +105,12 @@ namespace nsfd
     void set_cell(std::size_t cell);
     std::array<double, 2> set_elastic_cell(std::size_t cell, double *f);
     std::array<double, 2> set_flowing_cell(std::size_t cell, double *f);
+    void share_cells();
 
     const Discretization<dim> &discretization_;
     const JoinedMesh<dim> &mesh_;
+    const GhostCells *const ghosts_;  ///< null: there are none
+    const GhostCells *const divided_; ///< null: cells are not
     const bool differ_;
     std::vector<Tables> tables_;
     std::vector<std::unique_ptr<const Hyperelastic<dim>>> materials_;
@@ -105,6 +118,8 @@ namespace nsfd
     std::vector<std::array<std::pair<int, unsigned int>, 2>> sides_;
     std::vector<double> displacement_, forces_, front_forces_; ///< of corners
     std::vector<double> stored_, peaks_; ///< J; largest P:P of a cell
+    /// by cell, before the motion and now, where cells are divided
+    std::vector<std::array<double, 2>> volumes_;
     CellHistories<dim> histories_;
     std::vector<double> dilatations_, taken_; ///< theta by cell; see taken()
     int inverted_ = -1;

@@ -29,6 +29,8 @@ namespace nsfd
     std::size_t size() const { return ghost_.size(); }
     bool is_ghost(const std::size_t cell) const { return ghost_[cell] != 0; }
     bool anywhere(const bool here) const { return communicator_.any(here); }
+    /** The largest one of all ranks. Collective. */
+    double largest(const double here) const { return communicator_.max(here); }
 
     /** Things of cells, @p n each, that this rank wants from their ranks. */
     class Wanted

@@ -1,7 +1,9 @@
 #include "ghost_layer.h"
 
 #include "discretization/cells.h"
+#include "discretization/material_histories.h"
 #include "discretization/point_places.h"
+#include "nsfd/scene/scene_input.h"
 #include "nsfd/state/point_kind.h"
 
 #include <algorithm>
@@ -77,10 +79,30 @@ namespace nsfd
   GhostLayer<dim>::GhostLayer(const Communicator &communicator,
                               const Discretization<dim> &own,
                               std::unique_ptr<const Discretization<dim>> all)
-      : communicator_(communicator), own_(own), all_(std::move(all))
+      : communicator_(communicator), own_(own), all_(std::move(all)),
+        is_whole_(false)
+  {
+    match_cells(all_->cells().global_cell);
+    match_points();
+  }
+
+  template <int dim>
+  GhostLayer<dim>::GhostLayer(const Communicator &communicator,
+                              const Discretization<dim> &own,
+                              std::unique_ptr<const Discretization<dim>> whole,
+                              const std::vector<unsigned long long> &numbers)
+      : communicator_(communicator), own_(own), all_(std::move(whole)),
+        is_whole_(true)
+  {
+    match_cells(numbers);
+    match_points();
+  }
+
+  template <int dim>
+  void
+  GhostLayer<dim>::match_cells(const std::vector<unsigned long long> &numbers)
   {
     // both lists of cells are in the same order
-    const auto &numbers = all_->cells().global_cell;
     const auto &mine = own_.cells().global_cell;
     std::vector<std::uint8_t> ghost(numbers.size(), 1);
     for (std::size_t b = 0; b < numbers.size() && cell_.size() < mine.size();
@@ -89,8 +111,7 @@ namespace nsfd
         ghost[b] = 0;
         cell_.push_back(b);
       }
-    cells_.emplace(communicator, numbers, std::move(ghost));
-    match_points();
+    cells_.emplace(communicator_, numbers, std::move(ghost));
   }
 
   template <int dim>
@@ -142,26 +163,59 @@ namespace nsfd
 
   template <int dim>
   std::vector<double>
+  GhostLayer<dim>::spread(const First &of_own, const First &of_all,
+                          const std::vector<double> &own) const
+  {
+    std::vector<double> all(of_all.back(), 0.);
+    for (std::size_t b = 0; b < cell_.size(); ++b)
+      std::copy(own.begin() + long(of_own[b]),
+                own.begin() + long(of_own[b + 1]),
+                all.begin() + long(of_all[cell_[b]]));
+    return all;
+  }
+
+  template <int dim>
+  std::vector<double>
+  GhostLayer<dim>::own_of(const First &of_own, const First &of_all,
+                          const std::vector<double> &all) const
+  {
+    std::vector<double> own(of_own.back());
+    for (std::size_t b = 0; b < cell_.size(); ++b)
+      std::copy_n(all.begin() + long(of_all[cell_[b]]),
+                  of_own[b + 1] - of_own[b], own.begin() + long(of_own[b]));
+    return own;
+  }
+
+  template <int dim>
+  std::vector<double>
   GhostLayer<dim>::spread_unknowns(const std::vector<double> &own) const
   {
-    std::vector<double> all(all_->bodies().n_dofs(), 0.);
-    const auto &from = own_.bodies().first_dof, &to = all_->bodies().first_dof;
-    for (std::size_t b = 0; b < cell_.size(); ++b)
-      std::copy(own.begin() + long(from[b]), own.begin() + long(from[b + 1]),
-                all.begin() + long(to[cell_[b]]));
-    return all;
+    return spread(own_.bodies().first_dof, all_->bodies().first_dof, own);
   }
 
   template <int dim>
   std::vector<double>
   GhostLayer<dim>::own_unknowns(const std::vector<double> &all) const
   {
-    std::vector<double> own(own_.bodies().n_dofs());
-    const auto &to = own_.bodies().first_dof, &from = all_->bodies().first_dof;
-    for (std::size_t b = 0; b < cell_.size(); ++b)
-      std::copy_n(all.begin() + long(from[cell_[b]]), to[b + 1] - to[b],
-                  own.begin() + long(to[b]));
-    return own;
+    return own_of(own_.bodies().first_dof, all_->bodies().first_dof, all);
+  }
+
+  template <int dim>
+  std::vector<double>
+  GhostLayer<dim>::spread_histories(const std::vector<double> &own) const
+  {
+    if (!own_.input().has_history())
+      return own;
+    return spread(first_histories(own_), first_histories(*all_), own);
+  }
+
+  template <int dim>
+  std::vector<double>
+  GhostLayer<dim>::own_histories(const std::vector<double> &all) const
+  {
+    if (!own_.input().has_history())
+      return all;
+    return own_of(first_histories(own_), first_histories(*all_), all);
   }
 
   template <int dim>
@@ -192,19 +246,36 @@ namespace nsfd
   }
 
   template <int dim>
-  void GhostLayer<dim>::fetch_unknowns(std::vector<double> &all) const
+  void GhostLayer<dim>::fetch(const First &of_all,
+                              std::vector<double> &all) const
   {
-    // every cell has the same element
-    const auto &bodies = all_->bodies();
-    const auto width = unsigned(communicator_.max(
-        bodies.size() > 0 ? double(bodies.first_dof[1]) : 0.));
+    std::size_t most = 0;
+    for (std::size_t b = 0; b + 1 < of_all.size(); ++b)
+      most = std::max(most, of_all[b + 1] - of_all[b]);
+    const auto width = unsigned(communicator_.max(double(most)));
+    const auto n = [&of_all](const std::size_t cell) {
+      return of_all[cell + 1] - of_all[cell];
+    };
     cells_->all().start(width, [&](const std::size_t cell, double *values) {
-      std::copy_n(&all[bodies.first_dof[cell]], width, values);
+      std::copy_n(all.begin() + long(of_all[cell]), n(cell), values);
     });
     cells_->all().finish(
         width, [&](const std::size_t cell, const double *values) {
-          std::copy_n(values, width, &all[bodies.first_dof[cell]]);
+          std::copy_n(values, n(cell), all.begin() + long(of_all[cell]));
         });
+  }
+
+  template <int dim>
+  void GhostLayer<dim>::fetch_unknowns(std::vector<double> &all) const
+  {
+    fetch(all_->bodies().first_dof, all);
+  }
+
+  template <int dim>
+  void GhostLayer<dim>::fetch_histories(std::vector<double> &all) const
+  {
+    if (all_->input().has_history())
+      fetch(first_histories(*all_), all);
   }
 
 #define NSFD_INSTANTIATE_OF(dim, T)                                            \

@@ -120,7 +120,7 @@ namespace nsfd
         const auto type = find_mesh_type(mesh.type);
         return !mesh.split_simplices && type && type->has_simplices(mesh);
       };
-      return !input.large_motion &&
+      return !input.has_body_table() &&
              (input.mesh.type == "bodies"
                   ? std::all_of(input.bodies.begin(), input.bodies.end(),
                                 [&](const BodyInput &body) {
@@ -152,7 +152,7 @@ namespace nsfd
                                              const MPI_Comm communicator)
     {
       std::unique_ptr<Triangulation<dim>> result;
-      if (input.large_motion)
+      if (input.has_body_table())
         result = by_bodies<dim>(input, communicator);
       else if (mesh.cells[0].vertices.size() == dim + 1)
         result = std::make_unique<parallel::shared::Triangulation<dim>>(

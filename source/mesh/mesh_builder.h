@@ -19,11 +19,11 @@ namespace nsfd
    * Build the mesh that the input names, with straight cells and no manifolds.
    * Quads and hexes live on parallel::distributed. Triangles and tetrahedra are
    * made by rank 0, and every rank holds its part and the cells around it
-   * (spread_simplices()). With large motions every rank knows all cells, and
-   * whole bodies belong to one rank; @p input outlives the mesh then. A plain
-   * rectangle or brick is refined by p4est; every other mesh is refined first
-   * and handed over as one level, so that a vertex never depends on what a rank
-   * has stored.
+   * (spread_simplices()). Where SceneInput::has_body_table() every rank knows
+   * all cells, and whole bodies belong to one; @p input outlives the mesh then.
+   * A plain rectangle or brick is refined by p4est; every other mesh is refined
+   * first and handed over as one level, so that a vertex never depends on what
+   * a rank has stored.
    *
    * What is wrong with the mesh is added to @p problems, one sentence each and
    * the same on every rank; the result is then a null pointer.

@@ -177,7 +177,8 @@ namespace nsfd
       : discretization_(discretization), communicator_(communicator)
   {
     const SceneInput &input = discretization.input();
-    if (!moving && input.large_motion && discretization.body_table().n_rigid)
+    if (!moving && input.has_body_table() &&
+        discretization.body_table().n_rigid)
       own_layout_ =
           std::make_shared<const BodyLayout<dim>>(input, discretization);
     layout_ = moving ? &moving->layout() : own_layout_.get();

@@ -113,6 +113,8 @@ namespace nsfd
   {
     if (communicator.size() == 1)
       return nullptr;
+    if (input.has_body_table())
+      return whole_mesh(input, communicator);
     std::vector<std::string> problems, warnings; // as before
     const auto materials =
         cell_materials.empty()
@@ -124,6 +126,28 @@ namespace nsfd
         std::make_unique<const Discretization<dim>>(
             communicator, *triangulation, *groups, materials, input,
             CellSet::with_ghosts));
+  }
+
+  /** All cells, as one rank alone has them. */
+  template <int dim>
+  std::unique_ptr<const GhostLayer<dim>>
+  Model<dim>::whole_mesh(const SceneInput &input,
+                         const Communicator &communicator) const
+  {
+    std::vector<std::string> problems, warnings; // as those of the ranks
+    const auto mesh = build_mesh<dim>(input, MPI_COMM_SELF, problems);
+    const MeshGroups<dim> all_groups(input, *mesh);
+    const auto materials =
+        material_indices<dim>(input, all_groups, *mesh, problems, warnings);
+    const auto &cell_of = discretization->body_table().cell_of_global;
+    std::vector<unsigned long long> numbers(cell_of.size());
+    for (std::size_t number = 0; number < cell_of.size(); ++number)
+      numbers[cell_of[number]] = number;
+    return std::make_unique<const GhostLayer<dim>>(
+        communicator, *discretization,
+        std::make_unique<const Discretization<dim>>(
+            Communicator(MPI_COMM_SELF), *mesh, all_groups, materials, input),
+        numbers);
   }
 
   /** What takes the steps, as the scheme says. */

@@ -123,5 +123,7 @@ namespace nsfd
                            std::vector<std::string> &problems);
     std::unique_ptr<const GhostLayer<dim>>
     ghost_layer(const SceneInput &input, const Communicator &communicator);
+    std::unique_ptr<const GhostLayer<dim>>
+    whole_mesh(const SceneInput &input, const Communicator &communicator) const;
   };
 } // namespace nsfd

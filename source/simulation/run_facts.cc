@@ -138,7 +138,7 @@ namespace nsfd
       // what the rules of explicit steps, end points, released faces and
       // frames of large motions make comes and goes: as well as curves can be
       // read
-      constexpr double of_pure_rules = 1e-2, of_large_motion = 1e-3;
+      constexpr double of_pure_rules = 1e-2;
       // Contacts at rest have no energy but round-off of what loads would give
       // in a step, which in long steps is far more than all energies there are.
       const double scale =
@@ -163,7 +163,7 @@ namespace nsfd
         if (line == WatchedLine::scheme)
           given.bound = keeps_energy(input) ? energy_round_off : of_pure_rules;
         if (line == WatchedLine::large_motion)
-          given.bound = of_large_motion;
+          given.bound = most_of_large_motion;
         if (line == WatchedLine::load_steps) // as much as a single step may
           given.bound = EquilibriumSearch<2>::jump_share;
         given.advice = advice_of(line, input);

@@ -39,7 +39,7 @@ namespace nsfd
    * that does is not accepted. Pure rules (`sliding = velocity`, theta above
    * 1 / (1 + e), cohesion at the end point, explicit steps, laws of released
    * faces) and the frames of large motions can; then the certificate says how
-   * much.
+   * much. No step may give more by those of large motions than a run.
    */
   bool never_gives(WatchedLine line, const SceneInput &scene);
 
@@ -82,6 +82,8 @@ namespace nsfd
 
   /** Share of the largest energy that counts as none. */
   constexpr double energy_round_off = 1e-9;
+  /** What `large motion` may give in a run, and so in a step. */
+  constexpr double most_of_large_motion = 1e-3;
 
   /**
    * The last bits of the energies of a step, J: there is no energy at rest, but

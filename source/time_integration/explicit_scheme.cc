@@ -77,10 +77,6 @@ namespace nsfd
     void make_leapfrog(const IntegratorParts<dim> &parts,
                        Integrators<dim> &integrators)
     {
-      if (parts.input.large_motion && parts.communicator.size() > 1)
-        throw std::runtime_error(
-            "scheme = explicit with motion = large runs on one rank yet; start "
-            "it without mpirun, or write scheme = moreau-jean");
       integrators.other = std::make_unique<Leapfrog<dim>>(
           parts.input, parts.discretization, parts.communicator,
           parts.ghost_layer());

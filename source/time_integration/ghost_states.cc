@@ -9,6 +9,7 @@ namespace nsfd
   {
     state.displacement = layer.spread_unknowns(state.displacement);
     state.velocity = layer.spread_unknowns(state.velocity);
+    state.material_history = layer.spread_histories(state.material_history);
     for_point_fields(
         [&](const PointField &field, const auto member, const auto &...) {
           state.*member = layer.spread_points(state.*member, field.width(dim));
@@ -20,6 +21,7 @@ namespace nsfd
   {
     layer.fetch_unknowns(all.displacement);
     layer.fetch_unknowns(all.velocity);
+    layer.fetch_histories(all.material_history);
     for_point_fields(
         [&](const PointField &field, const auto member, const auto &...) {
           layer.fetch_points(field.width(dim), all.*member);
@@ -31,6 +33,7 @@ namespace nsfd
   {
     state.displacement = layer.own_unknowns(state.displacement);
     state.velocity = layer.own_unknowns(state.velocity);
+    state.material_history = layer.own_histories(state.material_history);
     for_point_fields(
         [&](const PointField &field, const auto member, const auto &...) {
           state.*member = layer.own_points(state.*member, field.width(dim));

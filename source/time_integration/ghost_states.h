@@ -15,7 +15,7 @@ namespace nsfd
   template <int dim>
   void fetch_state(const GhostLayer<dim> &layer, State &all);
 
-  /** Motion and points of the cells of this rank alone. */
+  /** Motion, histories and points of the cells of this rank alone. */
   template <int dim>
   void take_own(const GhostLayer<dim> &layer, State &state);
 

@@ -22,20 +22,21 @@ namespace nsfd
                           const Discretization<dim> &discretization,
                           const Communicator &communicator,
                           std::unique_ptr<const GhostLayer<dim>> layer)
-      : input_(input), communicator_(communicator),
-        ghosts_(communicator, discretization, std::move(layer)),
+      : input_(input), ghosts_(communicator, discretization, std::move(layer)),
+        communicator_(ghosts_.communicator()),
         discretization_(ghosts_.discretization()),
         all_(point_constants(input, discretization_)),
         own_(ghosts_.layer() ? std::make_unique<const OneStepProblem<dim>>(
                                    point_constants(input, discretization))
                              : nullptr),
         mesh_(discretization_, ghosts_.cells()),
-        hanging_(discretization_, mesh_, ghosts_.layer()),
+        hanging_(discretization_, mesh_,
+                 ghosts_.cells() ? ghosts_.layer() : nullptr),
         forces_(make_cell_forces(discretization_, mesh_,
                                  FrontViscosity(discretization_,
                                                 input.front_viscosity(),
                                                 ghosts_.cells()),
-                                 ghosts_.cells())),
+                                 ghosts_.cells(), ghosts_.divided())),
         faces_(discretization_, all_, hanging_),
         supports_(input, discretization_, mesh_),
         points_(discretization_, mesh_, all_),
@@ -48,7 +49,7 @@ namespace nsfd
     ghosts_.set_mesh(mesh_, hanging_);
     if (auto *finite = dynamic_cast<FiniteForces<dim> *>(forces_.get()))
       large_ = std::make_unique<LeapfrogLarge<dim>>(
-          input, discretization_, mesh_, all_, communicator, *finite);
+          input, discretization_, mesh_, all_, communicator_, *finite);
     if (!hanging_.any() && !has_rigid_cells(input))
       return;
     State state = ghosts_.with(initial_state());
@@ -60,9 +61,9 @@ namespace nsfd
     const auto intact = joined_points(discretization_, state);
     CornerGroups<dim> groups(mesh_, intact);
     groups.gather(state.displacement, groups.displacement);
-    RigidGroups<dim> rigid(discretization_, mesh_, communicator,
+    RigidGroups<dim> rigid(discretization_, mesh_, communicator_,
                            ghosts_.cells(),
-                           rigid_clusters(discretization_, mesh_, communicator,
+                           rigid_clusters(discretization_, mesh_, communicator_,
                                           ghosts_.cells(), intact));
     if (large_)
       rigid.set_places(state);
@@ -86,7 +87,7 @@ namespace nsfd
   {
     const auto &g = *groups_;
     const std::size_t n = g.force.size();
-    const bool other_length = h != last;            // also in the first step
+    const bool other_length = h != last || large_;  // also in the first step
     std::vector<const std::vector<double> *> loads; // given and in cracks
     if (!loads_.of_groups().empty())
       loads.push_back(&loads_.of_groups());
@@ -123,8 +124,10 @@ namespace nsfd
       const std::size_t at = 1 + 2 * loads.size();
       energies.pressure_work = kick / 2. * (sums[at] + sums[at + 1]);
     }
-    if (other_length)
-      energies.numerical = (h - last) / 4. * (sums[1] - sums.back());
+    if (other_length) {
+      energies.change = sums[1] - sums.back();
+      energies.numerical = (h - last) / 4. * energies.change;
+    }
     if (large_)
       large_->take_energies(h, last, before_.velocity, g, energies);
   }

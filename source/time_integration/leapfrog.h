@@ -134,8 +134,8 @@ namespace nsfd
                  State &next, StepReport &report);
 
     const SceneInput &input_;
-    const Communicator &communicator_;
     LeapfrogGhosts<dim> ghosts_;
+    const Communicator &communicator_; ///< of those that take steps together
     const Discretization<dim> &discretization_; ///< with ghosts
     /// constant data of the points, and without ghosts if there may be some
     const OneStepProblem<dim> all_;

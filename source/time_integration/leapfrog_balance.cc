@@ -282,6 +282,8 @@ namespace nsfd
               chains_.velocity[a * dim + c] * chains_.velocity[a * dim + c];
         balance.way = std::max(balance.way, square);
       }
+    if (discretization_.input().large_motion)
+      balance.way = communicator.max(balance.way);
     balance.way = chains_.problem.time_step * chains_.problem.theta *
                   std::sqrt(balance.way);
     balance.beyond_unique = communicator.any(balance.beyond_unique);

@@ -76,7 +76,9 @@ namespace nsfd
         }
         if (square < least_angle * least_angle)
           continue;
-        more.push_back(chains_.turn(a, axes));
+        const double stored = chains_.turn(a, axes);
+        if (mesh_.counts(node.node))
+          more.push_back(stored);
         for (auto &elastic : node.elastic)
           elastic.is_new = true;
       }

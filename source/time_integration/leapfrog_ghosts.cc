@@ -14,7 +14,8 @@ namespace nsfd
   LeapfrogGhosts<dim>::LeapfrogGhosts(
       const Communicator &communicator, const Discretization<dim> &own,
       std::unique_ptr<const GhostLayer<dim>> layer)
-      : communicator_(communicator), own_(own), layer_(std::move(layer))
+      : communicator_(communicator), alone_(MPI_COMM_SELF), own_(own),
+        layer_(std::move(layer))
   {
     if (!layer_)
       return;
@@ -41,14 +42,22 @@ namespace nsfd
   {
     if (layer_)
       take_own(*layer_, all);
+    count_once(all);
     return all;
+  }
+
+  template <int dim>
+  void LeapfrogGhosts<dim>::count_once(State &own) const
+  {
+    if (divided() && !communicator_.is_root())
+      own.touches.clear();
   }
 
   template <int dim>
   void LeapfrogGhosts<dim>::set_mesh(const JoinedMesh<dim> &mesh,
                                      const HangingNodes<dim> &hanging)
   {
-    if (!layer_)
+    if (!cells())
       return;
     std::vector<std::size_t> beyond;
     for (std::size_t i = 0; i < mesh.n_corners(); ++i)
@@ -111,7 +120,7 @@ namespace nsfd
     for (std::size_t row = 0; row < rows; ++row)
       for (const unsigned int group : groups.not_counted())
         std::fill_n(&terms[row * n + std::size_t(group) * dim], dim, 0.);
-    return communicator_.sums(terms.data(), rows, n);
+    return communicator().sums(terms.data(), rows, n);
   }
 
   template <int dim>

@@ -17,6 +17,8 @@ namespace nsfd
    * nodes with an own cell are computed on all ranks that have one there, from
    * the same numbers in the same order. Only the velocities of the ghosts at
    * nodes beyond are sent, once per step. On one rank nothing happens here.
+   * Where the layer is all of the mesh every rank takes the whole step as if it
+   * were alone, and only the forces of the cells are divided.
    */
   template <int dim>
   class LeapfrogGhosts
@@ -34,7 +36,17 @@ namespace nsfd
     }
     const GhostCells *cells() const
     {
-      return layer_ ? &layer_->cells() : nullptr;
+      return layer_ && !layer_->is_whole() ? &layer_->cells() : nullptr;
+    }
+    /** Cells of other ranks, where every one takes the whole step; or null. */
+    const GhostCells *divided() const
+    {
+      return layer_ && layer_->is_whole() ? &layer_->cells() : nullptr;
+    }
+    /** The ranks that take a step together. */
+    const Communicator &communicator() const
+    {
+      return divided() ? alone_ : communicator_;
     }
     /** By point with ghosts, that without, or unsigned(-1); empty: the same. */
     const std::vector<unsigned int> &own_points() const { return own_points_; }
@@ -44,6 +56,8 @@ namespace nsfd
     /** A state of the cells of this rank, with ghosts. Collective. */
     State with(State own) const;
     State without(State all) const;
+    /** What is of no cell and known to all ranks: of the first one alone. */
+    void count_once(State &own) const;
 
     /** Before the first exchange; @p hanging nodes follow others. Collective.
      */
@@ -67,6 +81,7 @@ namespace nsfd
 
   private:
     const Communicator &communicator_;
+    const Communicator alone_;
     const Discretization<dim> &own_;
     const std::unique_ptr<const GhostLayer<dim>> layer_;
     std::vector<unsigned int> own_points_;

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace nsfd
 {
@@ -147,17 +148,33 @@ namespace nsfd
       contacts_->add_impulses(row_of_group, rows);
   }
 
+  /** Of the front viscosity against each of @p velocities, W. Collective. */
+  template <int dim>
+  std::vector<double> LeapfrogLarge<dim>::front_powers(
+      const CornerGroups<dim> &groups,
+      const std::vector<const std::vector<double> *> &velocities) const
+  {
+    const std::size_t rows = velocities.size();
+    if (!forces_.front().acts())
+      return std::vector<double>(rows, 0.);
+    const auto terms = forces_.front_powers(groups, velocities);
+    return communicator_.sums(terms.data(), rows, terms.size() / rows);
+  }
+
   template <int dim>
   void LeapfrogLarge<dim>::take_energies(const double h, const double last,
                                          const std::vector<double> &before,
                                          const CornerGroups<dim> &groups,
                                          LeapfrogEnergies &energies)
   {
-    const double front_before = forces_.front_power(groups, before),
-                 front_after = forces_.front_power(groups, groups.velocity);
+    const auto powers = front_powers(groups, {&before, &groups.velocity});
+    const double front_before = powers[0], front_after = powers[1];
     front_taken_ = -(h + last) / 4. * (front_before + front_after);
     // of elastic forces alone, where a step changes its length
     energies.numerical -= (h - last) / 4. * (front_after - front_before);
+    energies.change -= front_after - front_before;
+    halved_ =
+        (h / 2. - last) / 4. * (h / 2. + last) / (h + last) * energies.change;
     energies.power -= front_after;
     energies.viscous += flow_[1];
     energies.plastic = flow_[0];
@@ -201,11 +218,11 @@ namespace nsfd
                                        LeapfrogEnergies &energies)
   {
     const double stored_now = stored(),
-                 front = forces_.front_power(groups, groups.velocity);
+                 front = front_powers(groups, {&groups.velocity})[0];
     energies.power_after -= front;
     take_front(-h / 4. * front, energies);
     bulk_ = stored_ - stored_now - h / 2. * (power_ + energies.power_after);
-    if (!forces_.taken().empty()) {
+    if (input_.has_history()) {
       const std::size_t n = forces_.taken().size() / 2;
       const auto sums = communicator_.sums(forces_.taken().data(), 2, n);
       std::copy_n(sums.begin(), 2, flow_.begin());
@@ -214,7 +231,8 @@ namespace nsfd
     stored_ = stored_now;
     // a longer step later would take or give energy, as each change does
     if (step % steps_between_looks == 0)
-      stiffening_ = std::max(stiffening_, forces_.stiffening());
+      stiffening_ =
+          std::max(stiffening_, communicator_.max(forces_.stiffening()));
   }
 
   template <int dim>
@@ -254,24 +272,39 @@ namespace nsfd
    * The error of a step, of third order, may go on for a few steps before it
    * comes back with the other sign: a fifth of what a run may give. Sooner is
    * better, since what a change of the step takes or gives grows with the
-   * square of the forces. A cell that is crushed is far stiffer than at rest:
-   * no step would be short enough, and the certificate says what it gave.
+   * square of the forces; where already half of the step would give by that
+   * what a run may not, it is none the better. A cell that is crushed is far
+   * stiffer than at rest: no step would be short enough, and the certificate
+   * says what it gave, if that is no more than what a run may give.
    */
   template <int dim>
   bool LeapfrogLarge<dim>::is_too_long(const double largest) const
   {
     constexpr double most_of_step = 2e-4, of_crushed = 64.;
-    return stiffening_ < of_crushed && std::abs(bulk_) > most_of_step * largest;
+    const double most = most_of_large_motion * largest;
+    return (stiffening_ < of_crushed && halved_ > -most &&
+            std::abs(bulk_) > most_of_step * largest) ||
+           bulk_ < -most;
   }
 
   template <int dim>
   std::string LeapfrogLarge<dim>::inverted() const
   {
-    if (forces_.inverted() < 0)
+    bool here = forces_.inverted() >= 0;
+    if (!communicator_.any(here))
       return {};
-    const auto x =
-        discretization_.cells().centre(std::size_t(forces_.inverted()));
-    std::vector<double> place(x.begin_raw(), x.end_raw());
+    // of several ranks the first place by its coordinates
+    std::vector<double> place(dim, std::numeric_limits<double>::max());
+    if (here) {
+      const auto x =
+          discretization_.cells().centre(std::size_t(forces_.inverted()));
+      place.assign(x.begin_raw(), x.end_raw());
+    }
+    for (double &x : place) {
+      const double mine = here ? x : std::numeric_limits<double>::max();
+      x = communicator_.min(mine);
+      here = here && mine == x;
+    }
     return fmt::format("({:.6g})", fmt::join(place, ", "));
   }
 
@@ -296,7 +329,7 @@ namespace nsfd
   void LeapfrogLarge<dim>::serialize(Archive &archive)
   {
     archive.numbers("large", bulk_, stiffening_, way_, front_held_);
-    if (forces_.histories().any())
+    if (input_.has_history())
       archive.numbers("flow", flow_[0], flow_[1]);
   }
 

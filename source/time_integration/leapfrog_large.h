@@ -81,6 +81,7 @@ namespace nsfd
       return contacts_ ? contacts_->missed(groups) : std::nullopt;
     }
 
+    /** Collective. */
     double stored() const { return communicator_.sum(forces_.stored()); }
     /** Before the forces at the end of a step of length @p h, which may not be:
         see inverted(). */
@@ -106,13 +107,17 @@ namespace nsfd
     bool is_too_long(double largest) const;
     /** No cell was well in a step of this length. */
     void ask_for_shorter_steps() { stiffening_ *= 4.; }
-    /** Where a cell is turned inside out; empty: nowhere. */
+    /** Where a cell is turned inside out, on all ranks the same; empty:
+        nowhere. Collective. */
     std::string inverted() const;
     void show(State &state) const;
     void fill_counters(std::map<std::string, double> &counters) const;
     void serialize(Archive &archive);
 
   private:
+    std::vector<double> front_powers(
+        const CornerGroups<dim> &groups,
+        const std::vector<const std::vector<double> *> &velocities) const;
     void take_front(double held, LeapfrogEnergies &energies);
     std::vector<std::size_t>
     nodes_of_groups(const LeapfrogPoints<dim> &points,
@@ -131,6 +136,7 @@ namespace nsfd
     double front_held_ = 0.;  ///< of the kinetic energy, by the same, J
     /// what the last forces have changed, as it was before them
     std::tuple<double, double, double, double, std::array<double, 2>> before_{};
+    double halved_ = 0.; ///< numerical of the step if it were half as long, J
     std::array<double, 2> flow_{};    ///< plastic and viscous, likewise, J
     double stored_ = 0., power_ = 0.; ///< of the step
     double stiffening_ = 1., way_ = 0.;

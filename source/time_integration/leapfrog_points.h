@@ -48,9 +48,9 @@ namespace nsfd
     using AxesOf =
         std::function<std::array<double, dim * dim>(std::size_t point)>;
     /** The faces have turned: rows n, t1, t2 of points of the mesh. Returns how
-        much more energy each stores along them, J, see LeapfrogChains. Where
-        @p rigid bodies have turned (null: there are none), velocities are those
-        of other places. */
+        much more energy each that counts here stores along them, J, see
+        LeapfrogChains. Where @p rigid bodies have turned (null: there are
+       none), velocities are those of other places. */
     std::vector<double> turn(const AxesOf &axes_of,
                              const RigidGroups<dim> *rigid,
                              const CornerGroups<dim> &groups);

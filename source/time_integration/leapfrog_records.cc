@@ -78,6 +78,8 @@ namespace nsfd
     const bool other_length = old.last_step > 0. && h != old.last_step;
     report.changes.taken[std::size_t(WatchedLine::large_motion)] =
         bodies.large + (other_length ? balance.numerical : 0.);
+    report.changes.worst[std::size_t(WatchedLine::large_motion)] =
+        LineChanges::no_point;
     report.changes.taken[std::size_t(WatchedLine::friction)] += bodies.friction;
     report.changes.taken[std::size_t(WatchedLine::impact)] += bodies.impact;
     report.changes.taken[std::size_t(WatchedLine::viscous)] =
@@ -145,7 +147,9 @@ namespace nsfd
       return;
     state.displacement = layer->own_unknowns(state.displacement);
     state.velocity = layer->own_unknowns(state.velocity);
+    state.material_history = layer->own_histories(state.material_history);
     state.bond_traction = layer->own_points(state.bond_traction, dim);
+    ghosts_.count_once(state);
   }
 
   template <int dim>

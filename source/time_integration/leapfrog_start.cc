@@ -33,10 +33,10 @@ namespace nsfd
     for (std::size_t i = 0; i < points.n_points; ++i)
       if (!state.two_sided[i]) // contact holds where it is
         state.released_overlap[i] = std::max(0., -state.jump[i * dim]);
+    if (large_)
+      large_->set_initial(state);
     State own = ghosts_.without(std::move(state));
     own.bond_traction.assign(own.jump.size(), 0.);
-    if (large_)
-      large_->set_initial(own);
     release_zeros(own);
     return own;
   }

@@ -83,16 +83,22 @@ namespace nsfd
       // ask for the same to less, and `numerical` is a difference of large
       // numbers in very long steps: the certificate holds their sum, a step is
       // given up only where hardly any digits are left
-      const bool of_digits = two_sided || line == WatchedLine::scheme;
-      if (given <= (of_digits ? 1e-4 * changes.scale + bound : bound) ||
-          !never_gives(line, input_))
+      const double more = line == WatchedLine::large_motion
+                              ? most_of_large_motion
+                          : two_sided || line == WatchedLine::scheme ? 1e-4
+                                                                     : 0.;
+      if (given <= more * changes.scale + bound ||
+          (line != WatchedLine::large_motion && !never_gives(line, input_)))
         continue;
       starts_cold_ = true;
       throw StepRejected(fmt::format(
           "the step of {:.4g} s at t = {:.6g} s would give {:.3g} J to `{}`, "
-          "{:.1e} of the largest energy; worst face {}",
+          "{:.1e} of the largest energy{}",
           next.time - old.time, old.time, given, name_of(line),
-          given / changes.scale, describe_(changes.worst[k])));
+          given / changes.scale,
+          changes.worst[k] == LineChanges::no_point
+              ? ""
+              : "; worst face " + describe_(changes.worst[k])));
     }
   }
 } // namespace nsfd

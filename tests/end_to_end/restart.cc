@@ -1,5 +1,7 @@
 #include "restart.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <chrono>
 #include <thread>
@@ -71,6 +73,18 @@ namespace end_to_end
   fs::path previous(const fs::path &directory)
   {
     return directory / "checkpoint_previous.h5";
+  }
+
+  void go_on(const Workspace &workspace, const Launch &before,
+             const Launch &after, const Result &whole, Result &resumed)
+  {
+    const auto steps = unsigned(0.4 * whole.number("steps")) + 1;
+    const Result stored = run(workspace, "resumed", storing(before, steps));
+    ASSERT_TRUE(stored.completed()) << stored.description();
+    // at 0.4, 0.8 and the end
+    fs::rename(previous(stored.directory), newest(stored.directory));
+    resumed = resume(workspace, "resumed", storing(after, steps));
+    ASSERT_TRUE(resumed.completed()) << resumed.description();
   }
 
   bool wait_for_rows(const fs::path &directory, const long n)

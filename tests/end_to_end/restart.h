@@ -23,6 +23,11 @@ namespace end_to_end
   std::filesystem::path newest(const std::filesystem::path &directory);
   std::filesystem::path previous(const std::filesystem::path &directory);
 
+  /** @p before goes as far as 0.8 of the steps of @p whole, @p after on. With
+      ASSERT_NO_FATAL_FAILURE. */
+  void go_on(const Workspace &workspace, const Launch &before,
+             const Launch &after, const Result &whole, Result &resumed);
+
   /** Wait until history.csv has so many rows; false if it takes too long. */
   bool wait_for_rows(const std::filesystem::path &directory, long n);
 } // namespace end_to_end

@@ -323,4 +323,118 @@ end
     EXPECT_LT(shortest, 0.26 * steps[1]);
     EXPECT_EQ(steps.back(), steps[1]);
   }
+
+  // Explicit steps of large motions are stable and yet far too long for forces
+  // that change as much in one: no step is accepted that gives by them what the
+  // certificate does not allow the whole run, on any number of ranks. Where
+  // shorter steps help they are taken, else the run fails.
+  TEST(Extremes, ForcesThatChangeTooMuchInAStep)
+  {
+    const Workspace workspace;
+    const fs::path file = workspace.path() / "torn.prm";
+    write_text(file, R"(
+set dimension = 2
+set motion    = large
+subsection Mesh
+  set type         = rectangle
+  set upper corner = 0.4, 0.2
+  set cells        = 4, 2
+end
+subsection Material: rubber
+  set model              = neo-hookean
+  set Young modulus      = 1 MPa
+  set Poisson ratio      = 0.3
+  set density            = 1000 kg/m^3
+  set initial velocity x = 300 * x
+end
+subsection Interface: all
+  set law = joined
+end
+subsection Time
+  set scheme = explicit
+  set step   = auto
+  set end    = 0.02 s
+end
+)");
+    for (const unsigned int n : {1u, 2u}) {
+      const std::string ranks = std::to_string(n);
+      const Result good =
+          good_run(workspace, "shorter " + ranks, {file, {}, n});
+      ASSERT_TRUE(good.completed());
+      EXPECT_GT(good.counter("rejected_steps"), 0.);
+      EXPECT_EQ(good.summary["certificate"]["lines"]["given by large motion"]
+                            ["verdict"],
+                "ok");
+      // a stiffer law, ten times as fast
+      const Result failed =
+          run(workspace, "failed " + ranks,
+              {file,
+               {"Material: rubber/model=saint-venant kirchhoff",
+                "Material: rubber/initial velocity x=3000 * x"},
+               n});
+      EXPECT_EQ(failed.outcome.exit_code, 3) << failed.description();
+      EXPECT_NE(failed.outcome.err.find("J to `large motion`"),
+                std::string::npos)
+          << failed.outcome.err;
+      EXPECT_EQ(failed.summary["certificate"]["lines"]["given by large motion"]
+                              ["verdict"],
+                "ok");
+    }
+  }
+
+  // Half of a bar flows and it tears: half of the step in which forces change
+  // most would give, by its length alone, more than what the step misses.
+  TEST(Extremes, StepsAreNotHalvedWhereThatGivesMore)
+  {
+    const Workspace workspace;
+    const fs::path file = workspace.path() / "two.prm";
+    write_text(file, R"(
+set dimension = 2
+set motion    = large
+subsection Mesh
+  set type         = rectangle
+  set upper corner = 0.4, 0.2
+  set cells        = 8, 4
+end
+subsection Material: plastic
+  set where                       = x < 0.09
+  set model                       = j2 plastic
+  set Young modulus               = 1 MPa
+  set Poisson ratio               = 0.3
+  set density                     = 1000 kg/m^3
+  set yield stress                = 20 kPa
+  set isotropic hardening modulus = 10 kPa
+  set initial velocity x          = 10 * x
+end
+subsection Material: rubber
+  set where              = all
+  set model              = neo-hookean
+  set Young modulus      = 1 MPa
+  set Poisson ratio      = 0.3
+  set density            = 1000 kg/m^3
+  set initial velocity x = 10 * x
+end
+subsection Interface: all
+  set law       = camacho-ortiz
+  set strength  = 50 kPa
+  set toughness = 10
+end
+subsection Contact: all
+  set friction = 0.3
+end
+subsection Time
+  set scheme = explicit
+  set step   = auto
+  set end    = 0.05 s
+end
+)");
+    // on four ranks one has no cell that flows
+    const Result one = good_run(workspace, "1 rank", {file}),
+                 four = good_run(workspace, "4 ranks", {file, {}, 4});
+    ASSERT_TRUE(one.completed());
+    EXPECT_EQ(
+        one.summary["certificate"]["lines"]["given by large motion"]["verdict"],
+        "ok");
+    EXPECT_TRUE(one.history_text == four.history_text);
+  }
 } // namespace end_to_end::test_extremes

@@ -4,7 +4,7 @@
 
 #include <ostream>
 
-// Explicit steps on joined cells, `scheme = explicit`: one, two and three ranks
+// Explicit steps on joined cells, `scheme = explicit`: one rank and several
 // give the same files, bit for bit, while nodes at their borders fall apart.
 
 namespace end_to_end::test_joined_ranks
@@ -50,11 +50,28 @@ end
       std::vector<std::string> set;
       /// of prm/verification or prm/benchmarks, or the square
       bool is_scene = false;
+      std::vector<unsigned int> ranks = {2, 3};
     };
 
     void PrintTo(const JoinedRow &row, std::ostream *stream)
     {
       *stream << row.name;
+    }
+
+    /** The square with a soft material, in strains of a tenth. */
+    std::vector<std::string> large(const std::string &model,
+                                   const std::vector<std::string> &more)
+    {
+      std::vector<std::string> set = {
+          "motion=large",
+          "Material: bulk/model=" + model,
+          "Material: bulk/Young modulus=3 GPa",
+          "Boundary: left/velocity x=if(t < 25 ns, -60 m/s, 60 m/s)",
+          "Boundary: right/velocity x=if(t < 25 ns, 60 m/s, -60 m/s)",
+          "Time/end=40 ns",
+          "Output/fields every=10 ns"};
+      set.insert(set.end(), more.begin(), more.end());
+      return set;
     }
 
     const std::string origin = "Mesh/lower corner=0, 0, 0",
@@ -118,6 +135,53 @@ end
           "Indicator: near/region=(x - 5 um)^2 + (y - 2 um)^2 + (z - 6 um)^2 < "
           "(2.5 um)^2",
           "Indicator: near/cell size=1 um", "Time/end=5 ns"}},
+        // motions of any size: frames turn, cells flow, steps change
+        {"large_quads",
+         large("neo-hookean",
+               {"dimension=2", "Interface: all/restitution=0.2"}),
+         false,
+         {2, 4}},
+        {"large_triangles",
+         large("saint-venant kirchhoff",
+               {"dimension=2", "Mesh/type=crossed triangles", "Mesh/cells=6, 6",
+                distorted, "Loads/gravity=0, -1e9",
+                "Boundary: top/traction x=20 MPa"}),
+         false,
+         {2, 4}},
+        {"large_flowing_hexes",
+         large("j2 plastic",
+               {"dimension=3", "Mesh/type=brick", origin, corner,
+                "Mesh/cells=4, 2, 2", "Material: bulk/yield stress=100 MPa",
+                "Material: bulk/isotropic hardening modulus=1 GPa",
+                "Interface: all/strength=120 MPa"}),
+         false,
+         {2, 4}},
+        {"large_flowing_tetrahedra",
+         large("viscoplastic",
+               {"dimension=3", "Mesh/type=tetrahedra", origin, corner,
+                "Mesh/cells=3, 2, 2", "Material: bulk/yield stress=100 MPa",
+                "Material: bulk/viscosity=0.1 Pa*s",
+                "Interface: all/strength=120 MPa"}),
+         false,
+         {2, 4}},
+        // contacts, rigid bodies, obstacles: only the forces are divided
+        {"large_contact",
+         large("neo-hookean", {"dimension=2", "Contact: all/friction=0.3"}),
+         false,
+         {2, 4}},
+        {"projectile",
+         {"Body: plate/cells=4, 20", "Time/end=20 us"},
+         true,
+         {2, 4}},
+        {"rigid_projectile",
+         {"Body: plate/cells=4, 20", "Time/end=20 us"},
+         true},
+        {"taylor_bar",
+         {"Mesh/file=" +
+              (quickstart().parent_path() / "meshes/taylor_bar_coarse.geo")
+                  .string(),
+          "Time/end=1 us"},
+         true},
         {"spall_square", {"Mesh/cells=60, 1"}, true},
         {"plate_impact", {"Mesh/cells=80, 1"}, true},
         {"bar_wall", {"Mesh/cells=40, 1"}, true},
@@ -156,7 +220,7 @@ end
     ASSERT_TRUE(one.completed());
     EXPECT_TRUE(row.is_scene || one.counter("released_points") > 0.);
     const auto fields = records(one, "fields");
-    for (const unsigned int n : {2u, 3u}) {
+    for (const unsigned int n : row.ranks) {
       SCOPED_TRACE(std::to_string(n) + " ranks");
       const Result several =
           good_run(workspace, std::to_string(n) + " ranks", {file, set, n});

@@ -246,22 +246,6 @@ namespace end_to_end::test_restart
   INSTANTIATE_TEST_SUITE_P(Table, RestartTest, testing::ValuesIn(rows),
                            [](const auto &info) { return info.param.name; });
 
-  namespace
-  {
-    /** @p before goes as far as 0.8 of the steps of @p whole, @p after on. */
-    void go_on(const Workspace &workspace, const Launch &before,
-               const Launch &after, const Result &whole, Result &resumed)
-    {
-      const auto steps = unsigned(0.4 * whole.number("steps")) + 1;
-      const Result stored = run(workspace, "resumed", storing(before, steps));
-      ASSERT_TRUE(stored.completed()) << stored.description();
-      // at 0.4, 0.8 and the end
-      fs::rename(previous(stored.directory), newest(stored.directory));
-      resumed = resume(workspace, "resumed", storing(after, steps));
-      ASSERT_TRUE(resumed.completed()) << resumed.description();
-    }
-  } // namespace
-
   // On two ranks bit for bit, and from one number of ranks to another.
   TEST(Restart, OnSeveralRanks)
   {
@@ -305,6 +289,17 @@ namespace end_to_end::test_restart
         {with(with(torn, joined), {"Mesh/type=crossed triangles"}), 2, 1},
         {with(torn, joined), 1, 3},
         {with(refined, joined), 2, 3},
+        {with(with(torn, joined),
+              {"motion=large", "Material: bulk/model=neo-hookean"}),
+         2, 3},
+        {with(with(torn, joined),
+              {"motion=large", "Material: bulk/model=j2 plastic",
+               "Material: bulk/yield stress=250 MPa"}),
+         2, 1},
+        {{benchmark("projectile"),
+          {"Body: plate/cells=4, 20", "Time/end=20 us"}},
+         1,
+         2},
         {{benchmark("push_back"), {"Mesh/cells=6, 6", "Time/end=17 ns"}}, 2, 3},
         {{benchmark("heap_of_bricks"), {"Time/end=0.1 s"}}, 3, 1},
         {{scene("plastic_bar"), {"Time/end=10 us"}}, 1, 2}};

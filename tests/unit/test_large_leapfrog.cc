@@ -424,5 +424,31 @@ end
         slow = given;
       }
     }
+
+    /** A block is pulled so fast that the forces of a stable step are far from
+        linear: it is not taken, however often it is tried. */
+    TEST(LargeLeapfrog, NoStepGivesWhatARunMayNot)
+    {
+      Steps<2> scene(tumbling(2),
+                     {"Material: rubber/initial velocity x=300 * x",
+                      "Material: rubber/initial velocity y=0", "Time/step=auto",
+                      "Time/end=0.02 s"});
+      for (unsigned int attempt = 0; attempt < 8; ++attempt)
+        EXPECT_THROW(scene.step(), StepRejected) << attempt;
+      double share = 0.5;
+      unsigned int taken = 0;
+      while (taken < 20)
+        try {
+          const StepReport report = scene.step(share);
+          const auto line = std::size_t(WatchedLine::large_motion);
+          EXPECT_GE(report.changes.taken[line],
+                    -most_of_large_motion * scene.state.largest_energy);
+          ++taken;
+        } catch (const StepRejected &) {
+          share /= 2.;
+          ASSERT_GT(share, 1e-3);
+        }
+      EXPECT_LT(share, 0.5);
+    }
   } // namespace
 } // namespace nsfd

@@ -106,6 +106,18 @@ namespace nsfd
           return true;
       return false;
     }
+    /**
+     * Bodies touch others, or some do not deform: every rank knows all cells.
+     * Only in large motions; explicit steps need it for these alone.
+     */
+    bool has_body_table() const
+    {
+      bool rigid = false;
+      for (const auto &material : materials)
+        rigid = rigid || material.rigid;
+      return large_motion && (!time.scheme.at_nodes || rigid ||
+                              !contacts.empty() || !obstacles.empty());
+    }
     /** A step is solved by iterations around linear ones. */
     bool iterates() const { return large_motion || has_history(); }
     /** Whether a step in time can come. */
