@@ -73,6 +73,8 @@ namespace end_to_end::test_wall
                         Seed{30075, "small symplectic mixed contact"},
                         // joints that hold each other
                         Seed{30306, "small moreau-jean mixed contact"},
+                        // rigid cells that rigid cells follow, and friction
+                        Seed{41189, "small moreau-jean mixed contact"},
                         // more than the tolerance of a step
                         Seed{30384, "small arkode elastic alone"},
                         // broken points of faces that hold elsewhere
