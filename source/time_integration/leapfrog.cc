@@ -86,7 +86,8 @@ namespace nsfd
   {
     const auto &g = *groups_;
     const std::size_t n = g.force.size();
-    const bool other_length = h != last;            // also in the first step
+    // also in the first step, and where it may become another one
+    const bool other_length = h != last || large_;
     std::vector<const std::vector<double> *> loads; // given and in cracks
     if (!loads_.of_groups().empty())
       loads.push_back(&loads_.of_groups());
@@ -123,8 +124,10 @@ namespace nsfd
       const std::size_t at = 1 + 2 * loads.size();
       energies.pressure_work = kick / 2. * (sums[at] + sums[at + 1]);
     }
-    if (other_length)
+    if (other_length) {
+      energies.power_before = sums.back();
       energies.numerical = (h - last) / 4. * (sums[1] - sums.back());
+    }
     if (large_)
       large_->take_energies(h, last, before_.velocity, g, energies);
   }

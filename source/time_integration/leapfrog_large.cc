@@ -159,6 +159,12 @@ namespace nsfd
     // of elastic forces alone, where a step changes its length
     energies.numerical -= (h - last) / 4. * (front_after - front_before);
     energies.power -= front_after;
+    const double kick = (h + last) / 2., half = h / 2.;
+    of_halving_ =
+        last > 0.
+            ? (last - half) * (last + half) / (8. * kick) *
+                  (energies.power - (energies.power_before - front_before))
+            : 0.;
     energies.viscous += flow_[1];
     energies.plastic = flow_[0];
     // steps that change their length are among it
@@ -254,14 +260,21 @@ namespace nsfd
    * The error of a step, of third order, may go on for a few steps before it
    * comes back with the other sign: a fifth of what a run may give. Sooner is
    * better, since what a change of the step takes or gives grows with the
-   * square of the forces. A cell that is crushed is far stiffer than at rest:
-   * no step would be short enough, and the certificate says what it gave.
+   * square of the forces. Where a change would give more than such steps do, as
+   * in few cells whose fastest motions hold much of the energy, it waits for
+   * less force. A cell that is crushed is far stiffer than at rest: no step
+   * would be short enough, and the certificate says what it gave.
    */
   template <int dim>
-  bool LeapfrogLarge<dim>::is_too_long(const double largest) const
+  bool LeapfrogLarge<dim>::is_too_long(const double largest)
   {
-    constexpr double most_of_step = 2e-4, of_crushed = 64.;
-    return stiffening_ < of_crushed && std::abs(bulk_) > most_of_step * largest;
+    constexpr double most_of_step = 2e-4, few_steps = 5., of_crushed = 64.;
+    if (!(stiffening_ < of_crushed))
+      return false;
+    const bool is_now = std::abs(bulk_) > most_of_step * largest;
+    waits_ = waits_ || is_now;
+    return waits_ && of_halving_ <= (is_now ? few_steps * std::abs(bulk_)
+                                            : most_of_step * largest);
   }
 
   template <int dim>
@@ -295,7 +308,7 @@ namespace nsfd
   template <int dim>
   void LeapfrogLarge<dim>::serialize(Archive &archive)
   {
-    archive.numbers("large", bulk_, stiffening_, way_, front_held_);
+    archive.numbers("large", bulk_, stiffening_, way_, front_held_, waits_);
     if (forces_.histories().any())
       archive.numbers("flow", flow_[0], flow_[1]);
   }

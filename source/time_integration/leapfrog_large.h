@@ -100,12 +100,17 @@ namespace nsfd
       if (front.acts())
         front = front_;
     }
-    /** Forces change so much in the step that the bulk gives what the
-        certificate does not allow, in this step or when it comes back; @p
-        largest: energy of the run so far. */
-    bool is_too_long(double largest) const;
+    /** Forces change so much in the step, or in one before, that the bulk gives
+        what the certificate does not allow, in this step or when it comes back,
+        and a shorter step would not give more; @p largest: energy of the run so
+        far. */
+    bool is_too_long(double largest);
     /** No cell was well in a step of this length. */
-    void ask_for_shorter_steps() { stiffening_ *= 4.; }
+    void ask_for_shorter_steps()
+    {
+      stiffening_ *= 4.;
+      waits_ = false;
+    }
     /** Where a cell is turned inside out; empty: nowhere. */
     std::string inverted() const;
     void show(State &state) const;
@@ -124,9 +129,11 @@ namespace nsfd
     const Communicator &communicator_;
     FiniteForces<dim> &forces_;
     std::unique_ptr<LeapfrogContacts<dim>> contacts_; ///< null: none
-    FrontViscosity front_; ///< of the forces that act in the step
-    double turned_ = 0.;   ///< see LeapfrogEnergies, until a step is taken, J
-    double bulk_ = 0.;     ///< of the last way, which the next step takes, J
+    FrontViscosity front_;   ///< of the forces that act in the step
+    double turned_ = 0.;     ///< see LeapfrogEnergies, until a step is taken, J
+    double bulk_ = 0.;       ///< of the last way, which the next step takes, J
+    double of_halving_ = 0.; ///< what the step would give at half its length, J
+    bool waits_ = false;     ///< for a time at which shorter steps give little
     double front_taken_ = 0.; ///< by the front viscosity in the step, J
     double front_held_ = 0.;  ///< of the kinetic energy, by the same, J
     /// what the last forces have changed, as it was before them

@@ -75,6 +75,10 @@ namespace end_to_end::test_wall
                         Seed{30306, "small moreau-jean mixed contact"},
                         // rigid cells that rigid cells follow, and friction
                         Seed{41189, "small moreau-jean mixed contact"},
+                        // shorter steps would give more than long ones do
+                        Seed{41128, "large auto elastic contact"},
+                        // a rigid body that is held at rest, and pinned
+                        Seed{41062, "large auto rigid contact"},
                         // more than the tolerance of a step
                         Seed{30384, "small arkode elastic alone"},
                         // broken points of faces that hold elsewhere
