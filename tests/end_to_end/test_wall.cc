@@ -63,6 +63,10 @@ namespace end_to_end::test_wall
                         // acute corners that cut through each other
                         Seed{30088, "large explicit breakable contact"},
                         Seed{30290, "large explicit breakable contact"},
+                        // tips that are in each other, and turn
+                        Seed{30243, "large explicit breakable contact"},
+                        // a surface that bulges between its nodes
+                        Seed{30473, "large explicit mixed contact"},
                         // edges where corners have touched
                         Seed{30371, "large explicit breakable contact"},
                         // what tolerances leave adds up
