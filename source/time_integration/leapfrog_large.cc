@@ -160,7 +160,7 @@ namespace nsfd
     energies.numerical -= (h - last) / 4. * (front_after - front_before);
     energies.power -= front_after;
     const double kick = (h + last) / 2., half = h / 2.;
-    of_halving_ =
+    halving_.gives =
         last > 0.
             ? (last - half) * (last + half) / (8. * kick) *
                   (energies.power - (energies.power_before - front_before))
@@ -272,9 +272,10 @@ namespace nsfd
     if (!(stiffening_ < of_crushed))
       return false;
     const bool is_now = std::abs(bulk_) > most_of_step * largest;
-    waits_ = waits_ || is_now;
-    return waits_ && of_halving_ <= (is_now ? few_steps * std::abs(bulk_)
-                                            : most_of_step * largest);
+    halving_.waits = halving_.waits || is_now;
+    return halving_.waits &&
+           halving_.gives <=
+               (is_now ? few_steps * std::abs(bulk_) : most_of_step * largest);
   }
 
   template <int dim>
@@ -308,7 +309,8 @@ namespace nsfd
   template <int dim>
   void LeapfrogLarge<dim>::serialize(Archive &archive)
   {
-    archive.numbers("large", bulk_, stiffening_, way_, front_held_, waits_);
+    archive.numbers("large", bulk_, stiffening_, way_, front_held_,
+                    halving_.waits);
     if (forces_.histories().any())
       archive.numbers("flow", flow_[0], flow_[1]);
   }

@@ -109,7 +109,7 @@ namespace nsfd
     void ask_for_shorter_steps()
     {
       stiffening_ *= 4.;
-      waits_ = false;
+      halving_.waits = false;
     }
     /** Where a cell is turned inside out; empty: nowhere. */
     std::string inverted() const;
@@ -129,11 +129,15 @@ namespace nsfd
     const Communicator &communicator_;
     FiniteForces<dim> &forces_;
     std::unique_ptr<LeapfrogContacts<dim>> contacts_; ///< null: none
-    FrontViscosity front_;   ///< of the forces that act in the step
-    double turned_ = 0.;     ///< see LeapfrogEnergies, until a step is taken, J
-    double bulk_ = 0.;       ///< of the last way, which the next step takes, J
-    double of_halving_ = 0.; ///< what the step would give at half its length, J
-    bool waits_ = false;     ///< for a time at which shorter steps give little
+    FrontViscosity front_; ///< of the forces that act in the step
+    double turned_ = 0.;   ///< see LeapfrogEnergies, until a step is taken, J
+    double bulk_ = 0.;     ///< of the last way, which the next step takes, J
+    /// what a step of half the length would give at once, J; it waits for a
+    /// time at which that is little
+    struct {
+      double gives = 0.;
+      bool waits = false;
+    } halving_;
     double front_taken_ = 0.; ///< by the front viscosity in the step, J
     double front_held_ = 0.;  ///< of the kinetic energy, by the same, J
     /// what the last forces have changed, as it was before them
