@@ -137,7 +137,8 @@ namespace nsfd
                                        std::uint64_t(b),
                                        unsigned(cells_.centre_node(b))});
     set_.surfaces.n_vertices = cells_.n_nodes() + table_.n_rigid;
-    if (!wholes_.of_cell.empty())
+    set_.surfaces.all_wholes = !wholes_.of_cell.empty();
+    if (set_.surfaces.all_wholes)
       set_.surfaces.is_behind = [this](const unsigned int vertex,
                                        const unsigned int facet) {
         return is_behind(vertex, facet);

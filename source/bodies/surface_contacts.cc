@@ -106,7 +106,8 @@ namespace nsfd
         state.surface_contact[places_.of_ball(b)] |= released;
   }
 
-  /** Which sides points were over at the start of the step. */
+  /** Which sides points were over at the start of the step: of several the
+      one that they are deepest below. */
   template <int dim>
   void SurfaceContacts<dim>::store_facets(State &next) const
   {
@@ -114,6 +115,9 @@ namespace nsfd
     next.surface_gap.assign(places_.n_of_faces(), 0.);
     for (const auto &pair : pairs_.points) {
       const std::size_t place = active_.set().point_places[pair.index];
+      if (next.surface_facet[place] != Surfaces<dim>::no_key &&
+          next.surface_gap[place] <= pair.gap)
+        continue;
       next.surface_facet[place] =
           active_.set().surfaces.facets[pair.facet].side;
       next.surface_gap[place] = pair.gap;

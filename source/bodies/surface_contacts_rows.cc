@@ -1,5 +1,6 @@
 #include "surface_contacts.h"
 
+#include "contact_detection/touching_rules.h"
 #include "core/gather.h"
 #include "obstacle_geometry.h"
 
@@ -253,8 +254,11 @@ namespace nsfd
     row.gap = pair.gap;
     row.rate = normal * away;
     if (row.gap < 0.) {
-      // bodies that turn touch with corners first, then with edges
+      // bodies that turn touch with corners first, then with edges, and what is
+      // nearly flat has no edge yet
       row.approach = old.last_step * away.norm();
+      row.overlap =
+          std::min(-row.gap, crease * std::sqrt(way[0].norm() * way[1].norm()));
       for (unsigned int v = 0; v < 2; ++v) {
         take_at_vertex(old, edge.vertex[v], row.body_1, row);
         take_at_vertex(old, other.vertex[v], int(row.body_2), row);
@@ -304,9 +308,11 @@ namespace nsfd
                                               const double reach,
                                               std::vector<Row> &rows)
   {
-    for (std::size_t p = 0; p < active_.set().surfaces.points.size(); ++p)
-      active_.set().surfaces.points[p].last_side =
-          old.surface_facet[active_.set().point_places[p]];
+    for (std::size_t p = 0; p < active_.set().surfaces.points.size(); ++p) {
+      auto &point = active_.set().surfaces.points[p];
+      point.last_side = old.surface_facet[active_.set().point_places[p]];
+      point.was_below = old.surface_gap[active_.set().point_places[p]] < 0.;
+    }
     search_.find(
         active_.set().surfaces, active_.positions(), reach,
         [this](const unsigned int a, const unsigned int b) {

@@ -160,8 +160,14 @@ namespace nsfd
             const double distance =
                 (end == 0 ? place : 1. - place) * length(own);
             pair_lost_[k] |= distance < same_place * size(pair);
-          } else if (pair.is_sure && is_beside(opposite, point->facet)) {
+          } else if (is_beside(opposite, point->facet)) {
             const double rounding = same_length * size(pair);
+            if (!pair.is_sure) {
+              // may come to lie so, but the corner has come in elsewhere
+              pair_lost_[k] |=
+                  point->gap < -rounding && pair.gap < point->gap - rounding;
+              continue;
+            }
             const Segment segment = segment_of(own, x_);
             const double climb = (end == 0 ? 1. : -1.) *
                                  dot(point->normal, segment.way) /

@@ -47,10 +47,10 @@ namespace nsfd
           if (touches_facet(own, *begin, y, inside, touch))
             valid_.push_back(touch);
         }
-        if (valid_.size() == 1)
-          touches.push_back(valid_[0]);
-        else if (!valid_.empty())
-          touches.push_back(*kept(best(same_length * own.size)));
+        if (valid_.size() == 1 || (!valid_.empty() && !surfaces_.all_wholes))
+          touches.push_back(*kept(best(valid_, same_length * own.size)));
+        else
+          add_of_wholes(same_length * own.size, touches);
       }
 
       /**
@@ -78,6 +78,25 @@ namespace nsfd
       }
 
     private:
+      /** One of every whole: next to one that it slides on it meets others. */
+      void add_of_wholes(const double rounding,
+                         std::vector<Touch<dim>> &touches)
+      {
+        wholes_.clear();
+        for (const auto &touch : valid_)
+          wholes_.push_back(surfaces_.facets[touch.pair.facet].whole);
+        std::sort(wholes_.begin(), wholes_.end());
+        wholes_.erase(std::unique(wholes_.begin(), wholes_.end()),
+                      wholes_.end());
+        for (const unsigned int whole : wholes_) {
+          of_whole_.clear();
+          for (const auto &touch : valid_)
+            if (surfaces_.facets[touch.pair.facet].whole == whole)
+              of_whole_.push_back(touch);
+          touches.push_back(*kept(best(of_whole_, rounding)));
+        }
+      }
+
       /** The facet beside that of a point, at the point, if there is one. */
       unsigned int next_at(const typename Surfaces<dim>::Point &point) const
       {
@@ -111,8 +130,12 @@ namespace nsfd
         touch.opposed = dot(own.normal, plane.normal);
         if (!(touch.opposed < opposed_below))
           return false;
-        if (beside_ && !(touch.opposed < face_to_face) &&
-            !in_cone(own, plane.normal))
+        // what has come in stays there while it turns
+        const bool stays = touch.is_kept &&
+                           surfaces_.points[touch.pair.index].was_below,
+                   fits = !beside_ || touch.opposed < face_to_face ||
+                          in_cone(own, plane.normal);
+        if (!fits && !stays)
           return false;
         const double depth = deepest * std::min(own.size, plane.size);
         if (dim == 2 &&
@@ -130,7 +153,7 @@ namespace nsfd
         touch.pair.closest = foot.place;
         touch.pair.weights = foot.weights;
         touch.is_kept = touch.is_kept && touch.pair.gap <= 0.;
-        return within(touch.pair.gap, depth) &&
+        return (fits || touch.is_kept) && within(touch.pair.gap, depth) &&
                !(touch.pair.gap < -same_length * own.size &&
                  is_outside(f, y, foot.place, touch.is_kept,
                             same_length * own.size) &&
@@ -231,16 +254,17 @@ namespace nsfd
        * Smallest |gap|, then most opposed, then key. Each round keeps all that
        * are equal up to round-off: the order of the candidates has no say.
        */
-      const Touch<dim> *best(const double rounding) const
+      const Touch<dim> *best(const std::vector<Touch<dim>> &among,
+                             const double rounding) const
       {
         double gap = std::numeric_limits<double>::max(), opposed = 1.;
-        for (const auto &touch : valid_)
+        for (const auto &touch : among)
           gap = std::min(gap, std::abs(touch.pair.gap));
-        for (const auto &touch : valid_)
+        for (const auto &touch : among)
           if (std::abs(touch.pair.gap) <= gap + rounding)
             opposed = std::min(opposed, touch.opposed);
         const Touch<dim> *result = nullptr;
-        for (const auto &touch : valid_)
+        for (const auto &touch : among)
           if (std::abs(touch.pair.gap) <= gap + rounding &&
               touch.opposed <= opposed + same_length &&
               (!result || key(touch.pair.facet) < key(result->pair.facet)))
@@ -294,7 +318,8 @@ namespace nsfd
       const std::vector<Plane<dim>> &planes_;
       double reach_;
       const std::vector<std::array<unsigned int, 2>> &next_; ///< facets
-      std::vector<Touch<dim>> valid_;
+      std::vector<Touch<dim>> valid_, of_whole_;
+      std::vector<unsigned int> wholes_;
       const Plane<dim> *beside_ = nullptr; ///< of the point at hand
     };
   } // namespace

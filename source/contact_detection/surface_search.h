@@ -39,6 +39,7 @@ namespace nsfd
       unsigned int vertex = 0, facet = 0;
       /// of the side that it was over in the last step: which way it came in
       std::uint64_t last_side = no_key;
+      bool was_below = false; ///< the facet there
     };
     struct Ball {
       unsigned int body = 0;
@@ -62,6 +63,9 @@ namespace nsfd
     /// the way from a vertex to a facet leads through the body of both, and it
     /// touches no such facet, however near it is; null: there are none
     std::function<bool(unsigned int vertex, unsigned int facet)> is_behind;
+    /// a point touches one facet of every whole that it is near to; else the
+    /// nearest of all alone
+    bool all_wholes = false;
   };
 
   /**

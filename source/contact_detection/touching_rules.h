@@ -37,9 +37,11 @@ namespace nsfd
   /** Sine between two edges that are not parallel. */
   constexpr double least_crossing = 0.03;
 
-  /** Cosine between the normals of two facets that have no edge (2.6 degrees).
+  /**
+   * Sine and cosine between the normals of two facets that have no edge (0.26
+   * degrees): it sticks out by this part of a facet before it is seen.
    */
-  constexpr double flat = 0.999;
+  constexpr double crease = 0.0045, flat = 1. - crease * crease / 2.;
 
   /**
    * A normal may be as far outside of the normals around an edge, as a sine:

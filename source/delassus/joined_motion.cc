@@ -194,6 +194,14 @@ namespace nsfd
   {
     auto &matrix = bodies_.matrix();
     matrix.set_step(bodies_.shares(bodies_.time_step_, bodies_.theta_));
+    const CoarseSpace &space = bodies_.conforming_->space();
+    tied_.clear();
+    if (!space.ties.empty())
+      tied_.resize(std::size_t(space.n_own) / matrix.size_, 0);
+    for (const CoarseSpace::Tie &tie : space.ties)
+      for (const long long one : {tie.number, tie.master})
+        if (const long long k = one - space.first; k >= 0 && k < space.n_own)
+          tied_[std::size_t(k) / matrix.size_] = 1;
     return bodies_.jacobi_.vertices(matrix);
   }
 

@@ -44,6 +44,10 @@ namespace nsfd
 
     const NodeClusters &vertices() override;
     unsigned int unknowns_per_node() const override;
+    bool is_tied(const int k) const override
+    {
+      return !tied_.empty() && tied_[std::size_t(k)];
+    }
     void node(int k, std::array<double, dim> &inverse_mass,
               std::array<double, dim> &velocity) const override;
     void sight(std::size_t point, std::vector<int> &nodes,
@@ -72,5 +76,6 @@ namespace nsfd
     double floor_ = 0.;             ///< of the latter
     bool known_ = false;            ///< the residual is that of w and of_
     std::vector<double> of_;        ///< P
+    std::vector<char> tied_;        ///< by own node; empty: none
   };
 } // namespace nsfd

@@ -108,6 +108,9 @@ namespace nsfd
     virtual const NodeClusters &vertices() = 0;
     /** Unknowns of a node: own values k n to (k + 1) n - 1 of node k. */
     virtual unsigned int unknowns_per_node() const = 0;
+    /** Node k follows others, or others follow it: it is not to be moved by
+        itself. Since the last call of vertices(). */
+    virtual bool is_tied(int k) const = 0;
     /** Of a node: the inverse of the diagonal of M_hat, 1/kg, and that times
         what is left of its momentum, m/s; 0 beyond its unknowns. */
     virtual void node(int k, Vector &inverse_mass, Vector &velocity) const = 0;

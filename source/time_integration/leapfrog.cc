@@ -87,7 +87,8 @@ namespace nsfd
   {
     const auto &g = *groups_;
     const std::size_t n = g.force.size();
-    const bool other_length = h != last || large_;  // also in the first step
+    // also in the first step, and where it may become another one
+    const bool other_length = h != last || large_;
     std::vector<const std::vector<double> *> loads; // given and in cracks
     if (!loads_.of_groups().empty())
       loads.push_back(&loads_.of_groups());
@@ -125,8 +126,8 @@ namespace nsfd
       energies.pressure_work = kick / 2. * (sums[at] + sums[at + 1]);
     }
     if (other_length) {
-      energies.change = sums[1] - sums.back();
-      energies.numerical = (h - last) / 4. * energies.change;
+      energies.power_before = sums.back();
+      energies.numerical = (h - last) / 4. * (sums[1] - sums.back());
     }
     if (large_)
       large_->take_energies(h, last, before_.velocity, g, energies);

@@ -172,10 +172,13 @@ namespace nsfd
     front_taken_ = -(h + last) / 4. * (front_before + front_after);
     // of elastic forces alone, where a step changes its length
     energies.numerical -= (h - last) / 4. * (front_after - front_before);
-    energies.change -= front_after - front_before;
-    halved_ =
-        (h / 2. - last) / 4. * (h / 2. + last) / (h + last) * energies.change;
     energies.power -= front_after;
+    const double kick = (h + last) / 2., half = h / 2.;
+    halving_.gives =
+        last > 0.
+            ? (last - half) * (last + half) / (8. * kick) *
+                  (energies.power - (energies.power_before - front_before))
+            : 0.;
     energies.viscous += flow_[1];
     energies.plastic = flow_[0];
     // steps that change their length are among it
@@ -272,19 +275,25 @@ namespace nsfd
    * The error of a step, of third order, may go on for a few steps before it
    * comes back with the other sign: a fifth of what a run may give. Sooner is
    * better, since what a change of the step takes or gives grows with the
-   * square of the forces; where already half of the step would give by that
-   * what a run may not, it is none the better. A cell that is crushed is far
-   * stiffer than at rest: no step would be short enough, and the certificate
-   * says what it gave, if that is no more than what a run may give.
+   * square of the forces. Where a change would give more than such steps do, as
+   * in few cells whose fastest motions hold much of the energy, it waits for
+   * less force. A cell that is crushed is far stiffer than at rest: no step
+   * would be short enough, and the certificate says what it gave, if that is no
+   * more than what a run may give.
    */
   template <int dim>
-  bool LeapfrogLarge<dim>::is_too_long(const double largest) const
+  bool LeapfrogLarge<dim>::is_too_long(const double largest)
   {
-    constexpr double most_of_step = 2e-4, of_crushed = 64.;
-    const double most = most_of_large_motion * largest;
-    return (stiffening_ < of_crushed && halved_ > -most &&
-            std::abs(bulk_) > most_of_step * largest) ||
-           bulk_ < -most;
+    constexpr double most_of_step = 2e-4, few_steps = 5., of_crushed = 64.;
+    if (bulk_ < -most_of_large_motion * largest)
+      return true;
+    if (!(stiffening_ < of_crushed))
+      return false;
+    const bool is_now = std::abs(bulk_) > most_of_step * largest;
+    halving_.waits = halving_.waits || is_now;
+    return halving_.waits &&
+           halving_.gives <=
+               (is_now ? few_steps * std::abs(bulk_) : most_of_step * largest);
   }
 
   template <int dim>
@@ -328,7 +337,8 @@ namespace nsfd
   template <int dim>
   void LeapfrogLarge<dim>::serialize(Archive &archive)
   {
-    archive.numbers("large", bulk_, stiffening_, way_, front_held_);
+    archive.numbers("large", bulk_, stiffening_, way_, front_held_,
+                    halving_.waits);
     if (input_.has_history())
       archive.numbers("flow", flow_[0], flow_[1]);
   }

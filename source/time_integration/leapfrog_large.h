@@ -101,12 +101,17 @@ namespace nsfd
       if (front.acts())
         front = front_;
     }
-    /** Forces change so much in the step that the bulk gives what the
-        certificate does not allow, in this step or when it comes back; @p
-        largest: energy of the run so far. */
-    bool is_too_long(double largest) const;
+    /** Forces change so much in the step, or in one before, that the bulk gives
+        what the certificate does not allow, in this step or when it comes back,
+        and a shorter step would not give more; @p largest: energy of the run so
+        far. */
+    bool is_too_long(double largest);
     /** No cell was well in a step of this length. */
-    void ask_for_shorter_steps() { stiffening_ *= 4.; }
+    void ask_for_shorter_steps()
+    {
+      stiffening_ *= 4.;
+      halving_.waits = false;
+    }
     /** Where a cell is turned inside out, on all ranks the same; empty:
         nowhere. Collective. */
     std::string inverted() const;
@@ -132,11 +137,16 @@ namespace nsfd
     FrontViscosity front_; ///< of the forces that act in the step
     double turned_ = 0.;   ///< see LeapfrogEnergies, until a step is taken, J
     double bulk_ = 0.;     ///< of the last way, which the next step takes, J
+    /// what a step of half the length would give at once, J; it waits for a
+    /// time at which that is little
+    struct {
+      double gives = 0.;
+      bool waits = false;
+    } halving_;
     double front_taken_ = 0.; ///< by the front viscosity in the step, J
     double front_held_ = 0.;  ///< of the kinetic energy, by the same, J
     /// what the last forces have changed, as it was before them
     std::tuple<double, double, double, double, std::array<double, 2>> before_{};
-    double halved_ = 0.; ///< numerical of the step if it were half as long, J
     std::array<double, 2> flow_{};    ///< plastic and viscous, likewise, J
     double stored_ = 0., power_ = 0.; ///< of the step
     double stiffening_ = 1., way_ = 0.;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 // Which groups the rigid bodies of RigidGroups take along, and how they begin.
@@ -303,6 +304,13 @@ namespace nsfd
       h = std::min(1e-3 * end, h * angle / turn);
     }
     const double allowed = large_ ? 1e-6 : 1e-9;
+    // a pin asks for what is left of its way, the round-off of two places
+    double places = 0.;
+    for (const Pin &pin : pins_)
+      for (unsigned int c = 0; c < dim; ++c)
+        places = std::max(places, std::abs(pin.at[c]));
+    const double round_off =
+        8. * std::numeric_limits<double>::epsilon() * places / h;
     const std::vector<double> all_shares = {0., 0.3, 0.7, 1.};
     for (std::size_t k = 0; k < (large_ ? 1 : all_shares.size()); ++k) {
       const double share = all_shares[k];
@@ -317,7 +325,8 @@ namespace nsfd
         wrong =
             std::max(wrong, std::abs(product(member.R[row.component], V) - g));
       }
-      if (communicator_.max(wrong) > allowed * communicator_.max(size))
+      if (communicator_.max(wrong) >
+          allowed * communicator_.max(size) + round_off)
         throw std::runtime_error(
             "the motion that boundaries ask of a rigid body is not one of a "
             "rigid body: write the same motion wherever it is held");

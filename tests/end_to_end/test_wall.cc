@@ -63,6 +63,10 @@ namespace end_to_end::test_wall
                         // acute corners that cut through each other
                         Seed{30088, "large explicit breakable contact"},
                         Seed{30290, "large explicit breakable contact"},
+                        // tips that are in each other, and turn
+                        Seed{30243, "large explicit breakable contact"},
+                        // a surface that bulges between its nodes
+                        Seed{30473, "large explicit mixed contact"},
                         // edges where corners have touched
                         Seed{30371, "large explicit breakable contact"},
                         // what tolerances leave adds up
@@ -73,6 +77,12 @@ namespace end_to_end::test_wall
                         Seed{30075, "small symplectic mixed contact"},
                         // joints that hold each other
                         Seed{30306, "small moreau-jean mixed contact"},
+                        // rigid cells that rigid cells follow, and friction
+                        Seed{41189, "small moreau-jean mixed contact"},
+                        // shorter steps would give more than long ones do
+                        Seed{41128, "large auto elastic contact"},
+                        // a rigid body that is held at rest, and pinned
+                        Seed{41062, "large auto rigid contact"},
                         // more than the tolerance of a step
                         Seed{30384, "small arkode elastic alone"},
                         // broken points of faces that hold elsewhere

@@ -244,6 +244,51 @@ namespace surface_scene::test_surface_search
     }
   }
 
+  // The same corner, which has been below the side in the step before, and has
+  // turned meanwhile: it does not come out of it on another side.
+  TEST(SurfaceSearch, CornerThatHasComeInStaysWhileItTurns)
+  {
+    const double turn = 0.12, c = std::cos(turn), s = std::sin(turn);
+    const double x = 0.02, y = 0.9;
+    for (const bool was_below : {false, true}) {
+      Scene<2> scene;
+      add_box(scene, 0, {0., 0.}, {1., 1.});
+      add_polygon(
+          scene, 1,
+          {{x, y}, {x + c, y + s}, {x + c - s, y + s + c}, {x - s, y + c}});
+      scene.all_points();
+      for (auto &point : scene.surfaces.points) {
+        point.last_side = 103;
+        point.was_below = was_below;
+      }
+      const auto found = names(scene, scene.find(0.1));
+      EXPECT_EQ(found.count({4, 104, 103}) + found.count({4, 107, 103}),
+                was_below ? 1u : 0u);
+    }
+  }
+
+  // A corner that slides on one body runs into another one, which is never the
+  // nearer one.
+  TEST(SurfaceSearch, CornerBetweenTwoBodiesTouchesBoth)
+  {
+    for (const bool all_wholes : {false, true}) {
+      Scene<2> scene;
+      add_box(scene, 0, {-1., -1.}, {3., 0.});
+      add_polygon(scene, 1, {{0., 0.001}, {0.3, 0.401}, {-0.3, 0.401}});
+      add_box(scene, 2, {-1., -0.5}, {0.003, 0.5});
+      for (auto &facet : scene.surfaces.facets)
+        facet.whole = facet.body;
+      scene.surfaces.all_wholes = all_wholes;
+      scene.all_points();
+      std::set<unsigned int> touched;
+      for (const auto &pair : scene.find(0.1).points)
+        if (scene.surfaces.points[pair.index].vertex == 4)
+          touched.insert(scene.surfaces.facets[pair.facet].body);
+      EXPECT_EQ(touched.count(0), 1u);
+      EXPECT_EQ(touched.size(), all_wholes ? 2u : 1u);
+    }
+  }
+
   // A box in the corner of an L touches the floor and the wall, both of one
   // body.
   TEST(SurfaceSearch, CornerInANotchTouchesBothSides)

@@ -34,6 +34,9 @@ namespace node_test
 
       const NodeClusters &vertices() override { return vertices_; }
       unsigned int unknowns_per_node() const override { return dim; }
+      bool is_tied(const int k) const override { return k == tied; }
+
+      int tied = -1; ///< a node that others follow
 
       /** M (v_free - v_0) + H^T P is left of its momentum. */
       void node(const int k, Vector &inverse_mass,
@@ -132,6 +135,35 @@ namespace node_test
         run.accept();
       }
     }
+
+    /** What is moved by itself comes apart from what follows it. */
+    void expect_left_alone()
+    {
+      Setting setting;
+      setting.law = test::make_law(
+          "camacho-ortiz", {{"strength", "2"}, {"critical opening", "0.6"}});
+      setting.friction = 0.3;
+      NodeRun<2> run(setting, 1);
+      run.prepare();
+      const auto start = run.node.velocity;
+      std::vector<double> U, w(start.size() * 2, 0.), P = run.impulses;
+      std::vector<std::size_t> points;
+      for (std::size_t i = 0; i < run.n_points(); ++i) {
+        const auto relative = run.relative(i, start);
+        U.insert(U.end(), relative.begin(), relative.end());
+        points.push_back(i);
+      }
+      Star<2> star(run, start);
+      const auto &vertex = star.vertices().clusters.at(0);
+      star.tied = vertex.nodes.at(0);
+      VertexElimination<2> elimination;
+      const Communicator alone(MPI_COMM_SELF);
+      ASSERT_EQ(star.vertices().clusters.size(), 1u);
+      EXPECT_FALSE(
+          elimination.solve(run.problem, star, alone, points, U, w, P));
+      EXPECT_EQ(w, std::vector<double>(w.size(), 0.));
+      EXPECT_EQ(P, run.impulses);
+    }
   } // namespace
 
   TEST(VertexElimination, MomentaAndLawsHoldAfterwards)
@@ -141,4 +173,6 @@ namespace node_test
       expect_solved<3>(seed, 5);
     }
   }
+
+  TEST(VertexElimination, NodesThatOthersFollowStay) { expect_left_alone(); }
 } // namespace node_test

@@ -79,7 +79,7 @@ namespace wall
   }
 
   void drive(Draft &draft, Draw &draw, const std::string &side, const int d,
-             const double sign)
+             double sign)
   {
     const double c = draft.slowest.wave_speed(),
                  rise = draft.unit / c * draw.between(1., 10.);
@@ -93,8 +93,14 @@ namespace wall
         draft.kind == Kind::rigid
             ? draft.slowest.density * draft.speed * draft.speed
             : draft.slowest.density * c * draft.speed;
+    // what breaks under a dead load beyond its strength has no equilibrium, nor
+    // have slopes without friction that are pushed over each other
+    const bool breaks_at_rest =
+        draft.integrator == "quasi-static" && draft.kind != Kind::elastic;
+    if (breaks_at_rest)
+      sign = std::abs(sign);
     // rigid bodies between two sides that move cannot follow
-    if (draft.kind != Kind::rigid && draw.chance(0.75)) {
+    if (draft.kind != Kind::rigid && (draw.chance(0.75) || breaks_at_rest)) {
       block.entries.push_back(fmt::format("velocity {} = {}{}", axis(d),
                                           speed(sign * draft.speed), shape));
       draft.end_at_half(draft.speed, d, grows ? 0.5 * rise : 0., 0.);

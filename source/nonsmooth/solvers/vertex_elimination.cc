@@ -4,7 +4,8 @@
 
 namespace nsfd
 {
-  /** False where a point sees more than can be said. */
+  /** False where a point sees more than can be said, or what moves there moves
+      other places. */
   template <int dim>
   bool VertexElimination<dim>::set_problem(const NodeClusters::Cluster &vertex,
                                            const std::vector<int> &place,
@@ -15,6 +16,9 @@ namespace nsfd
     node_.clear();
     node_.inverse_mass.resize(vertex.nodes.size());
     node_.velocity.resize(vertex.nodes.size());
+    if (std::any_of(vertex.nodes.begin(), vertex.nodes.end(),
+                    [&](const int k) { return motion.is_tied(k); }))
+      return false;
     for (std::size_t b = 0; b < vertex.nodes.size(); ++b)
       motion.node(vertex.nodes[b], node_.inverse_mass[b], node_.velocity[b]);
     ends_.assign(vertex.points.size(), {});
