@@ -430,7 +430,8 @@ thickness, and the inertia is one number, about z. `Boundary/pressure` is a dead
 load: along the normal and per area of the face at t = 0.
 
 There is no mesh that changes, no bonded face (intact faces of extrinsic laws
-are `rigid`), no equilibrium, no scheme but `moreau-jean` and no `path = assembled`.
+are `rigid`), no equilibrium and no `path = assembled`; schemes are `moreau-jean`, `explicit` and
+`auto`.
 
 END
   sections "$scratch/large.prm" \

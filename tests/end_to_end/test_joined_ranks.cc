@@ -237,8 +237,9 @@ end
         EXPECT_EQ(one.counter(key), several.counter(key)) << key;
       if (row.name.rfind("bisected", 0) == 0) {
         EXPECT_GT(one.counter("mesh_changes"), 1.);
-        if (row.name == "bisected")
+        if (row.name == "bisected") {
           EXPECT_GT(one.counter("joined_halves"), 0.);
+        }
         for (const char *key :
              {"mesh_changes", "joined_halves", "mesh_change_energy"})
           EXPECT_EQ(one.counter(key), several.counter(key)) << key;
