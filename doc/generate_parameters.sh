@@ -371,7 +371,8 @@ that it does not use.
 - `where` is `all`, a side of the bounding box (`left right bottom top front
   back`, boundary faces only), `between materials [a, b]` (interior faces), the
   name of a body, a material or boundary id of a generator's mesh, or a
-  condition on the centre of the cell or face. The first Material block that
+  condition on the centre of the cell or face. A Boundary block that does not
+  say it is on the side, the group or the body of its name. The first Material block that
   holds owns a cell, the first Interface block an interior face; Boundary and
   Obstacle blocks add up. Of Contact blocks the first that names the materials
   of two bodies is theirs; bodies without one pass through each other.

@@ -74,7 +74,7 @@ namespace nsfd
       BoundaryInput boundary;
       boundary.name = reader.block_name();
       boundary.where =
-          read_where(reader, is_side(boundary.name) ? boundary.name : "",
+          read_where(reader, where_by_name(boundary.name, scene),
                      WhereUse::boundary_faces, scene,
                      "left, right, bottom, top, front, back, all, a group or "
                      "an expression");

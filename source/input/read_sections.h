@@ -132,8 +132,11 @@ namespace nsfd
                      const std::string &value, std::string names,
                      const std::string &example, const SceneInput &scene);
 
-  /** left, right, ..., front, back. */
-  bool is_side(const std::string &word);
+  /**
+   * Where a Boundary block is that does not say it: the side, the group of the
+   * mesh or the body that has its name; empty if there is none.
+   */
+  std::string where_by_name(const std::string &name, const SceneInput &scene);
 
   /** An expression that may be left out. */
   std::optional<Expression> read_optional_expression(SectionReader &reader,

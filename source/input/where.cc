@@ -63,6 +63,12 @@ namespace nsfd
               (type && type->is_one_mesh() && !type->is_for_bodies()));
     }
 
+    /** left, right, ..., front, back. */
+    bool is_side(const std::string &word)
+    {
+      return std::find(sides.begin(), sides.end(), word) != sides.end();
+    }
+
     std::vector<std::string> body_names(const SceneInput &scene)
     {
       std::vector<std::string> names;
@@ -249,9 +255,15 @@ namespace nsfd
     return result;
   }
 
-  bool is_side(const std::string &word)
+  std::string where_by_name(const std::string &name, const SceneInput &scene)
   {
-    return std::find(sides.begin(), sides.end(), word) != sides.end();
+    const std::vector<std::string> groups = group_names(scene),
+                                   bodies = body_names(scene);
+    const bool is_known =
+        is_side(name) ||
+        std::find(groups.begin(), groups.end(), name) != groups.end() ||
+        std::find(bodies.begin(), bodies.end(), name) != bodies.end();
+    return is_known ? name : "";
   }
 
   Where read_where(SectionReader &reader, const std::string &default_text,

@@ -200,6 +200,15 @@ namespace test_mesh_groups
               "");
     // sides and expressions go on working
     EXPECT_EQ(errors_of(mesh_scene(2, plate, boundary("left"))), "");
+    // a block has the group of its name, unless it says otherwise
+    EXPECT_EQ(errors_of(mesh_scene(2, plate,
+                                   "subsection Boundary: left end\n"
+                                   "  set velocity x = 1\nend\n")),
+              "");
+    EXPECT_TRUE(has(errors_of(mesh_scene(2, plate,
+                                         "subsection Boundary: far end\n"
+                                         "  set velocity x = 1\nend\n")),
+                    "`where` is missing"));
     EXPECT_EQ(errors_of(mesh_scene(2, plate, boundary("x < 1e-6"))), "");
   }
 
