@@ -139,4 +139,26 @@ namespace nsfd
     std::vector<std::vector<BodySlot>> slots_;
     std::vector<std::vector<Vector>> slot_gradients_; ///< slot x node
   };
+
+  /** V + a x arm at a slot of a rigid body, by unknown V, a: rows of its
+      @p trace. */
+  template <int dim>
+  void set_rigid_trace(const dealii::Tensor<1, dim> &arm,
+                       const unsigned int slot, Block &trace)
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      for (unsigned int j = 0; j < BodyLayout<dim>::n_rigid; ++j)
+        trace(slot * dim + d, j) = d == j ? 1. : 0.;
+    if constexpr (dim == 2) {
+      trace(slot * dim, 2) = -arm[1];
+      trace(slot * dim + 1, 2) = arm[0];
+    } else
+      for (unsigned int a = 0; a < 3; ++a) {
+        Vec3 e{};
+        e[a] = 1.;
+        const Vec3 w = space::cross(e, in_space<dim>(arm));
+        for (unsigned int d = 0; d < 3; ++d)
+          trace(slot * dim + d, 3 + a) = w[d];
+      }
+  }
 } // namespace nsfd

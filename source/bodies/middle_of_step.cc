@@ -53,28 +53,6 @@ namespace nsfd
   }
 
   template <int dim>
-  void MiddleOfStep<dim>::set_rigid_trace(const std::size_t b,
-                                          const unsigned int slot,
-                                          const Vector &arm)
-  {
-    Block &trace = bodies_.classes[b].trace;
-    for (unsigned int d = 0; d < dim; ++d)
-      for (unsigned int j = 0; j < BodyLayout<dim>::n_rigid; ++j)
-        trace(slot * dim + d, j) = d == j ? 1. : 0.;
-    if constexpr (dim == 2) {
-      trace(slot * dim, 2) = -arm[1];
-      trace(slot * dim + 1, 2) = arm[0];
-    } else
-      for (unsigned int a = 0; a < 3; ++a) {
-        Vec3 e{};
-        e[a] = 1.;
-        const Vec3 w = cross(e, in_space<dim>(arm));
-        for (unsigned int d = 0; d < 3; ++d)
-          trace(slot * dim + d, 3 + a) = w[d];
-      }
-  }
-
-  template <int dim>
   void MiddleOfStep<dim>::place_rows()
   {
     row_ends_.assign(points_.rows().size(), {});
@@ -233,7 +211,7 @@ namespace nsfd
       const auto b = std::size_t(bodies.body[side]);
       const unsigned int slot = bodies.slot[side];
       if (layout_[b].is_rigid())
-        set_rigid_trace(b, slot, x - centre(b));
+        set_rigid_trace<dim>(x - centre(b), slot, bodies_.classes[b].trace);
       else if (side == 0)
         set_deformable_trace(b, slot,
                              in_reference_cell(row.facet_cell, row.facet.data(),

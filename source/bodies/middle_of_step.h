@@ -37,9 +37,6 @@ namespace nsfd
     /** Of a rigid body. */
     Place centre(std::size_t body) const;
 
-    /** V + a x arm at a slot of a rigid body. */
-    void set_rigid_trace(std::size_t body, unsigned int slot,
-                         const Vector &arm);
     /** Places, frames and traces of the contacts. Collective. */
     void place_rows();
 

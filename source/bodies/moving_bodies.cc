@@ -219,7 +219,7 @@ namespace nsfd
         for (unsigned int d = 0; d < dim; ++d)
           for (unsigned int j = 0; j < cell.n_dofs; ++j)
             x[d] += cell.trace(slot.slot * dim + d, j) * nodes[first + j];
-        middle_.set_rigid_trace(b, s, x - centre);
+        set_rigid_trace<dim>(x - centre, s, body.trace);
       }
       rigid_motions_.supports().project(b, body.trace);
       return;

@@ -17,20 +17,6 @@ namespace nsfd
       return std::inner_product(a.begin(), a.end(), b.begin(), 0.);
     }
 
-    /** Velocity of a component at @p arm per unknown of a rigid body. */
-    template <int dim>
-    double rigid_row(const Tensor<1, dim> &arm, const unsigned int component,
-                     const unsigned int unknown)
-    {
-      if (unknown < dim)
-        return component == unknown;
-      if (dim == 2)
-        return component == 0 ? -arm[1] : arm[0];
-      Vec3 axis{};
-      axis[unknown - dim] = 1.;
-      return cross(axis, in_space<dim>(arm))[component];
-    }
-
     /** Orthonormal, of the range of @p columns: the longest that is left
         first. */
     std::vector<std::vector<double>>
@@ -75,30 +61,30 @@ namespace nsfd
       if (!layout[b].is_rigid())
         continue;
       Support &support = supports_[b];
+      const auto &slots = layout.slots(b);
+      Block at_rest(unsigned(slots.size()) * dim, n_rigid);
       double size = 0.;
-      const auto arm = [&](const unsigned int point) {
-        Tensor<1, dim> result;
-        for (unsigned int d = 0; d < dim; ++d)
-          result[d] = points.position[point * dim + d] - layout[b].centre[d];
-        return result;
-      };
-      for (unsigned int s = 0; s < layout.slots(b).size(); ++s) {
-        const unsigned int point = layout.slots(b)[s].point;
+      for (unsigned int s = 0; s < slots.size(); ++s) {
+        const unsigned int point = slots[s].point;
         if (origins[point].kind != PointOrigin::Kind::motion)
           continue;
+        Tensor<1, dim> arm;
+        for (unsigned int d = 0; d < dim; ++d)
+          arm[d] = points.position[point * dim + d] - layout[b].centre[d];
+        set_rigid_trace<dim>(arm, s, at_rest);
+        size = std::max(size, arm.norm());
         const BoundaryInput &side = input.boundaries[origins[point].block];
         for (unsigned int c = 0; c < dim; ++c)
           if (side.velocity[c] || side.displacement[c])
             support.rows.push_back(
                 {s, c, point, std::sqrt(points.weight[point])});
-        size = std::max(size, arm(point).norm());
       }
       std::vector<std::vector<double>> columns(n_rigid);
       for (unsigned int j = 0; j < n_rigid; ++j)
         for (const Row &row : support.rows)
-          columns[j].push_back(
-              row.root * rigid_row<dim>(arm(row.point), row.component, j) /
-              (j < dim || size == 0. ? 1. : size));
+          columns[j].push_back(row.root *
+                               at_rest(row.slot * dim + row.component, j) /
+                               (j < dim || size == 0. ? 1. : size));
       support.basis = range_of(std::move(columns));
       // what is held altogether, or by one row for each motion, stays as it is
       if (support.basis.size() == n_rigid ||

@@ -63,10 +63,10 @@ namespace nsfd
               (type && type->is_one_mesh() && !type->is_for_bodies()));
     }
 
-    /** left, right, ..., front, back. */
-    bool is_side(const std::string &word)
+    bool is_among(const std::vector<std::string> &names,
+                  const std::string &word)
     {
-      return std::find(sides.begin(), sides.end(), word) != sides.end();
+      return std::find(names.begin(), names.end(), word) != names.end();
     }
 
     std::vector<std::string> body_names(const SceneInput &scene)
@@ -257,12 +257,9 @@ namespace nsfd
 
   std::string where_by_name(const std::string &name, const SceneInput &scene)
   {
-    const std::vector<std::string> groups = group_names(scene),
-                                   bodies = body_names(scene);
-    const bool is_known =
-        is_side(name) ||
-        std::find(groups.begin(), groups.end(), name) != groups.end() ||
-        std::find(bodies.begin(), bodies.end(), name) != bodies.end();
+    const bool is_known = is_among(sides, name) ||
+                          is_among(group_names(scene), name) ||
+                          is_among(body_names(scene), name);
     return is_known ? name : "";
   }
 
@@ -279,12 +276,10 @@ namespace nsfd
       return where;
 
     const std::vector<std::string> bodies = body_names(scene);
-    const bool is_body =
-        std::find(bodies.begin(), bodies.end(), value) != bodies.end();
+    const bool is_body = is_among(bodies, value);
 
     const std::vector<std::string> groups = group_names(scene);
-    const bool is_group =
-        std::find(groups.begin(), groups.end(), value) != groups.end();
+    const bool is_group = is_among(groups, value);
     const bool is_grains =
         scene.mesh.type == "voronoi" && value == "between grains";
 
@@ -299,7 +294,7 @@ namespace nsfd
     else if (value.compare(0, between_groups.size(), between_groups) == 0)
       where =
           read_between_groups(reader, value, between_groups.size(), use, scene);
-    else if (is_side(value)) {
+    else if (is_among(sides, value)) {
       where.kind = Where::Kind::side;
       where.name = value;
       if (scene.dimension == 2 && (value == "front" || value == "back"))

@@ -34,13 +34,6 @@ namespace nsfd
     }
   } // namespace
 
-  bool has_rigid_cells(const SceneInput &input)
-  {
-    return std::any_of(
-        input.materials.begin(), input.materials.end(),
-        [](const MaterialInput &material) { return material.rigid; });
-  }
-
   template <int dim>
   std::vector<std::uint8_t>
   joined_points(const Discretization<dim> &discretization, State &state)

@@ -10,10 +10,6 @@
 
 namespace nsfd
 {
-  struct SceneInput;
-
-  bool has_rigid_cells(const SceneInput &input);
-
   /**
    * By point: what is joined by common nodes before anything is released, as
    * @p state has it, where its kind becomes `bonded`. A law between two rigid

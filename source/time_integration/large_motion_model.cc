@@ -10,6 +10,7 @@
 #include "contact_detection/touching_rules.h"
 #include "core/gather.h"
 #include "core/stopwatch.h"
+#include "discretization/face_sizes.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <fmt/format.h>
@@ -129,28 +130,22 @@ namespace nsfd
     /**
      * Broken points whose sides have slid past each other, though others of
      * their face still hold: what keeps the distance of two places along the
-     * normal of the face is no contact there. @p weight and the result by point
-     * of the mesh.
+     * normal of the face is no contact there. @p face_size and the result by
+     * point of the mesh.
      */
     template <int dim>
-    std::vector<char> slid_apart(const Discretization<dim> &discretization,
-                                 const std::vector<double> &weight,
+    std::vector<char> slid_apart(const std::vector<double> &face_size,
                                  const State &next)
     {
-      std::vector<char> slid(discretization.points().n_points, 0);
-      for (const auto &face : discretization.points().faces) {
-        const unsigned int end = face.first + face.count;
-        double area = 0.;
-        for (unsigned int j = face.first; j < end; ++j)
-          area += weight[j];
-        const double least = inset * (dim == 2 ? area : std::sqrt(area));
-        for (unsigned int j = face.first; j < end && !face.boundary; ++j) {
-          double square = 0.;
-          for (unsigned int c = 1; c < dim; ++c)
-            square += next.jump[j * dim + c] * next.jump[j * dim + c];
-          slid[j] = next.kind[j] == PointKind::free && !next.two_sided[j] &&
-                    square > least * least;
-        }
+      std::vector<char> slid(face_size.size(), 0);
+      for (std::size_t j = 0; j < slid.size(); ++j) {
+        if (next.kind[j] != PointKind::free || next.two_sided[j])
+          continue;
+        double square = 0.;
+        for (unsigned int c = 1; c < dim; ++c)
+          square += next.jump[j * dim + c] * next.jump[j * dim + c];
+        const double least = inset * face_size[j];
+        slid[j] = square > least * least;
       }
       return slid;
     }
@@ -164,10 +159,12 @@ namespace nsfd
         history_(parts.discretization, bodies.contacts(),
                  parts.delassus.communicator())
   {
-    if (!parts.input.contacts.empty() || !parts.input.obstacles.empty())
-      contacts_ = std::make_unique<SurfaceContacts<dim>>(
-          parts.input, parts.discretization, bodies.layout(),
-          parts.delassus.communicator());
+    if (parts.input.contacts.empty() && parts.input.obstacles.empty())
+      return;
+    contacts_ = std::make_unique<SurfaceContacts<dim>>(
+        parts.input, parts.discretization, bodies.layout(),
+        parts.delassus.communicator());
+    face_size_ = face_sizes(parts.discretization.points());
   }
 
   template <int dim>
@@ -449,8 +446,7 @@ namespace nsfd
     }
     erase_contacts(parts_.input, bodies_.contacts(), next);
     if (contacts_)
-      contacts_->part(
-          next, slid_apart(parts_.discretization, parts_.problem.weight, next));
+      contacts_->part(next, slid_apart<dim>(face_size_, next));
   }
 
   template <int dim>

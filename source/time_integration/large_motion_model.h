@@ -73,6 +73,7 @@ namespace nsfd
     HeldRows<dim> held_rows_;
     const SurfaceHistory<dim> history_;
     std::unique_ptr<SurfaceContacts<dim>> contacts_;
+    std::vector<double> face_size_; ///< by point of the mesh; empty without
 
     // of the step: points as MovingBodies has them
     const State *start_ = nullptr; ///< without contacts

@@ -50,13 +50,13 @@ namespace nsfd
     if (auto *finite = dynamic_cast<FiniteForces<dim> *>(forces_.get()))
       large_ = std::make_unique<LeapfrogLarge<dim>>(
           input, discretization_, mesh_, all_, communicator_, *finite);
-    if (!hanging_.any() && !has_rigid_cells(input))
+    if (!hanging_.any() && !input.has_rigid_bodies())
       return;
     State state = ghosts_.with(initial_state());
     if (hanging_.any())
       check_hanging(communicator_, discretization_, mesh_, state, hanging_,
                     supports_);
-    if (!has_rigid_cells(input))
+    if (!input.has_rigid_bodies())
       return;
     const auto intact = joined_points(discretization_, state);
     CornerGroups<dim> groups(mesh_, intact);

@@ -7,6 +7,7 @@
 #include "contact_detection/touching_rules.h"
 #include "core/disjoint_sets.h"
 #include "discretization/cell_geometry.h"
+#include "discretization/face_sizes.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
@@ -76,7 +77,8 @@ namespace nsfd
       const OneStepProblem<dim> &all, const Communicator &communicator)
       : input_(input), discretization_(discretization), all_(all),
         layout_(input, discretization), balls_(layout_, discretization.cells()),
-        surfaces_(input, discretization, layout_, communicator)
+        surfaces_(input, discretization, layout_, communicator),
+        face_size_(face_sizes(discretization.points()))
   {
     DisjointSets parts(discretization.bodies().size());
     for (const auto &face : discretization.points().faces)
@@ -85,15 +87,6 @@ namespace nsfd
     part_of_.resize(layout_.size());
     for (std::size_t b = 0; b < layout_.size(); ++b)
       part_of_[layout_[b].number] = parts.first(layout_[b].cells[0]);
-    const auto &points = discretization.points();
-    face_size_.resize(points.n_points);
-    for (const auto &face : points.faces) {
-      double area = 0.;
-      for (unsigned int i = face.first; i < face.first + face.count; ++i)
-        area += all.weight[i];
-      std::fill_n(face_size_.begin() + face.first, face.count,
-                  dim == 2 ? area : std::sqrt(area));
-    }
   }
 
   template <int dim>

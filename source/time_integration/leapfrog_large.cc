@@ -35,7 +35,7 @@ namespace nsfd
         communicator_(communicator), forces_(forces)
   {
     if (!input.contacts.empty() || !input.obstacles.empty() ||
-        has_rigid_cells(input))
+        input.has_rigid_bodies())
       contacts_ = std::make_unique<LeapfrogContacts<dim>>(input, discretization,
                                                           all, communicator);
   }
@@ -44,7 +44,7 @@ namespace nsfd
   void LeapfrogLarge<dim>::set_initial(State &state) const
   {
     state.material_history = forces_.histories().at_rest();
-    if (has_rigid_cells(input_)) {
+    if (input_.has_rigid_bodies()) {
       const BodyLayout<dim> layout(input_, discretization_);
       RigidMotions<dim>(input_, discretization_, layout, communicator_)
           .set_nearest(state);

@@ -55,7 +55,7 @@ namespace nsfd
     points_.sort();
     groups_ = std::make_unique<CornerGroups<dim>>(mesh_, intact);
     rigid_.reset();
-    if (has_rigid_cells(input_))
+    if (input_.has_rigid_bodies())
       rigid_ = std::make_unique<RigidGroups<dim>>(
           discretization_, mesh_, communicator_, ghosts_.cells(),
           rigid_clusters(discretization_, mesh_, communicator_, ghosts_.cells(),

@@ -98,6 +98,13 @@ namespace nsfd
     }
     /** Share of critical damping of fronts in explicit steps. */
     double front_viscosity() const;
+    bool has_rigid_bodies() const
+    {
+      for (const auto &material : materials)
+        if (material.rigid)
+          return true;
+      return false;
+    }
     /** Materials that keep how they were strained. */
     bool has_history() const
     {
@@ -112,10 +119,7 @@ namespace nsfd
      */
     bool has_body_table() const
     {
-      bool rigid = false;
-      for (const auto &material : materials)
-        rigid = rigid || material.rigid;
-      return large_motion && (!time.scheme.at_nodes || rigid ||
+      return large_motion && (!time.scheme.at_nodes || has_rigid_bodies() ||
                               !contacts.empty() || !obstacles.empty());
     }
     /** A step is solved by iterations around linear ones. */
