@@ -1,6 +1,7 @@
 #include "active_surfaces.h"
 
 #include "contact_detection/flat_sides.h"
+#include "core/disjoint_sets.h"
 #include "core/gather.h"
 
 #include "nsfd/scene/scene_input.h"
@@ -71,6 +72,8 @@ namespace nsfd
       return true;
     set_surfaces();
     set_moving_nodes();
+    set_pieces();
+    share_rest();
     share_motion(state);
     const auto keeps_shape = [this](const unsigned int b) {
       return table_.is_rigid(b);
@@ -138,11 +141,10 @@ namespace nsfd
                                        unsigned(cells_.centre_node(b))});
     set_.surfaces.n_vertices = cells_.n_nodes() + table_.n_rigid;
     set_.surfaces.all_wholes = !wholes_.of_cell.empty();
-    if (set_.surfaces.all_wholes)
-      set_.surfaces.is_behind = [this](const unsigned int vertex,
-                                       const unsigned int facet) {
-        return is_behind(vertex, facet);
-      };
+    set_.surfaces.is_behind = [this](const unsigned int vertex,
+                                     const unsigned int facet) {
+      return is_behind(vertex, facet);
+    };
     set_.points_by_vertex.clear();
     for (unsigned int p = 0; p < set_.surfaces.points.size(); ++p)
       set_.points_by_vertex.emplace_back(set_.surfaces.points[p].vertex, p);
@@ -179,6 +181,44 @@ namespace nsfd
                      });
     x_.assign(set_.surfaces.n_vertices * dim, 0.);
     v_.assign(cells_.n_nodes() * dim, 0.);
+  }
+
+  /** Cells of bodies between which a face holds are one piece. */
+  template <int dim>
+  void ActiveSurfaces<dim>::set_pieces()
+  {
+    if (!wholes_.of_cell.empty()) {
+      piece_of_cell_ = wholes_.of_cell;
+      return;
+    }
+    DisjointSets bodies(table_.bodies.size());
+    for (std::size_t f = 0; f < separated_.size(); ++f)
+      if (!separated_[f]) {
+        const auto &face = cells_.mesh_faces()[f];
+        bodies.join(face.body_1, face.body_2);
+      }
+    piece_of_cell_.resize(cells_.size());
+    for (unsigned int c = 0; c < cells_.size(); ++c)
+      piece_of_cell_[c] = bodies.first(table_.body_of_cell[c]);
+  }
+
+  template <int dim>
+  void ActiveSurfaces<dim>::share_rest()
+  {
+    std::vector<double> own;
+    own.reserve(own_moving_nodes_.size() * dim);
+    for (const std::size_t node : own_moving_nodes_) {
+      const auto x =
+          bodies_.rest().begin() + long(bodies_.own_node(node) * dim);
+      own.insert(own.end(), x, x + dim);
+    }
+    const auto places = gather_all(all_, own);
+    rest_.assign(cells_.n_nodes() * dim, 0.);
+    const double *from = places.data();
+    for (const std::size_t node : moving_nodes_) {
+      std::copy_n(from, dim, rest_.data() + node * dim);
+      from += dim;
+    }
   }
 
   /** Where the surfaces of all ranks are, and how fast. */
@@ -286,31 +326,28 @@ namespace nsfd
 
   /**
    * At rest the vertex lies below the facet, as near as a touch may be deep, in
-   * the same whole: across a cell that is flat or a layer that is thin.
+   * the same piece: across a cell that is flat or a layer that is thin.
    */
   template <int dim>
   bool ActiveSurfaces<dim>::is_behind(const unsigned int vertex,
                                       const unsigned int f) const
   {
     const auto &facet = set_.surfaces.facets[f];
-    if (wholes_.of_cell[vertex / cells_.nodes_per_cell()] != facet.whole)
+    if (piece_of_cell_[vertex / cells_.nodes_per_cell()] !=
+        piece_of_cell_[set_.facet_cells[f]])
       return false;
     const std::size_t first = cells_.first_node(set_.facet_cells[f]);
     for (unsigned int node = 0; node < cells_.nodes_per_cell(); ++node)
       if (merged(first + node) == vertex)
         return true;
-    const auto put = [this](const std::size_t node, double *x) {
-      const std::size_t k = bodies_.own_node(node);
-      std::copy_n(&bodies_.rest()[k * dim], dim, x);
-    };
     std::array<double, 4 * dim> x{};
     auto local = facet;
     for (unsigned int v = 0; v < facet.n_vertices; ++v) {
       local.vertex[v] = v;
-      put(facet.vertex[v], &x[v * dim]);
+      std::copy_n(&rest_[facet.vertex[v] * dim], dim, &x[v * dim]);
     }
     std::array<double, dim> y;
-    put(vertex, y.data());
+    std::copy_n(&rest_[vertex * dim], dim, y.data());
     return is_below<dim>(local, x.data(), y);
   }
 

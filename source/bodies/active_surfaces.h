@@ -95,6 +95,8 @@ namespace nsfd
     void set_surfaces();
     void set_sides();
     void set_moving_nodes();
+    void set_pieces();
+    void share_rest();
     void share_motion(const State &old);
     void add_face(unsigned int cell, unsigned int face);
     bool is_behind(unsigned int vertex, unsigned int facet) const;
@@ -118,9 +120,12 @@ namespace nsfd
     /// corners that they free may touch an obstacle
     std::vector<char> separated_, opened_;
     Wholes wholes_; ///< empty: every body is one
+    /// by cell: what hangs together by faces that hold; of what has no wholes
+    std::vector<unsigned int> piece_of_cell_;
     bool known_ = false;
     std::vector<std::size_t> moving_nodes_, own_moving_nodes_; ///< of surfaces
     std::vector<double> x_, v_; ///< of them by node, and centres
+    std::vector<double> rest_;  ///< by node, of moving_nodes_
     std::unordered_set<UnorderedPair> joined_;
     Set set_;
     std::vector<ObstacleFace> obstacle_faces_;

@@ -116,6 +116,8 @@ namespace wall
     double smallest_edge() const;
     int n_cells() const;
     bool is_rigid() const;
+    /** Implicit steps of large motions of what breaks: the dearest. */
+    bool iterates_on_cracks() const;
     /** Something goes at @p speed from @p start on, along direction @p d, @p
         away from what it meets. */
     void end_at_half(double speed, int d, double start, double away);

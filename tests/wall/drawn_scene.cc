@@ -142,16 +142,17 @@ namespace wall
       const double courant = is_explicit
                                  ? draw.decades(0.1, 0.35)
                                  : draw.decades(0.1, is_rigid ? 5. : 20.);
+      const bool is_heavy = draft.iterates_on_cracks();
       const double h = courant * crossing,
                    budget = (draft.dim == 2 ? 1. : 0.25) *
                             (draft.integrator == "explicit" ? 4e5
+                             : is_heavy                     ? 2e3
                              : draft.large                  ? 8e3
                                                             : 2e4);
       const double n = std::clamp(budget / draft.n_cells(), 10., 2000.);
       const double wanted =
           2. * draft.gap / draft.speed +
           draft.unit / draft.wave_speed() * draw.decades(2., 50.);
-      end = std::min({n * h, is_rigid ? 1e30 : wanted, draft.longest});
       // what Gmsh makes of a size is known to the program
       const bool in_crossings =
           !is_rigid && (draw.chance(0.5) ||
@@ -161,6 +162,10 @@ namespace wall
               ? "auto"
           : in_crossings ? fmt::format("{:.3g} courant", courant)
                          : time(h);
+      // `auto` is half a crossing
+      const double taken =
+          is_heavy && step == "auto" ? std::min(h, 0.5 * crossing) : h;
+      end = std::min({n * taken, is_rigid ? 1e30 : wanted, draft.longest});
       if (statics) {
         end = 0.01 * draft.unit / draft.speed * draw.decades(0.1, 3.);
         step = time(end / draw.whole(10, 40));

@@ -312,25 +312,47 @@ namespace wall
       }
     }
 
-    /** Tetrahedra that may all break are what ten seconds of CPU hold. */
+    /** Points of all faces, some: two to four of a face, and half of the faces
+     * of a cell are its own. */
+    int n_points(const Draft &draft)
+    {
+      int n = 0;
+      for (const Body &body : draft.bodies)
+        if (!body.rigid) {
+          const bool boxes = body.is_boxes() || body.shape == "ball";
+          n += body.n_cells(draft.dim) *
+               (draft.dim == 2 ? (boxes ? 4 : 3) : (boxes ? 12 : 6));
+        }
+      return n;
+    }
+
+    /** What may all break is what ten seconds of CPU hold: tetrahedra, and all
+     * cells that implicit steps of large motions move. */
     void coarsen(Draft &draft)
     {
-      constexpr int most = 300;
+      const bool iterates = draft.iterates_on_cracks();
+      constexpr int most_points = 250, most_tetrahedra = 300;
+      const auto counts = [&](const Body &body) {
+        return body.shape != "ball" &&
+               (iterates ? !body.rigid : body.breakable && !body.is_boxes());
+      };
       const auto is_heavy = [&] {
+        if (iterates)
+          return n_points(draft) > most_points;
         int n = 0;
         for (const Body &body : draft.bodies)
-          if (body.breakable && !body.is_boxes() && body.shape != "ball")
+          if (counts(body))
             n += body.n_cells(draft.dim);
-        return draft.dim == 3 && draft.large && n > most;
+        return draft.dim == 3 && draft.large && n > most_tetrahedra;
       };
       while (is_heavy()) {
         int *largest = nullptr;
         for (Body &body : draft.bodies)
-          if (body.breakable && !body.is_boxes() && body.shape != "ball")
+          if (counts(body))
             for (int &n : body.cells)
               if (!largest || n > *largest)
                 largest = &n;
-        if (*largest == 1)
+        if (!largest || *largest == 1)
           return;
         --*largest;
       }
@@ -408,6 +430,13 @@ namespace wall
   {
     return std::all_of(bodies.begin(), bodies.end(),
                        [](const Body &body) { return body.rigid; });
+  }
+
+  bool Draft::iterates_on_cracks() const
+  {
+    return large && integrator == "moreau-jean" &&
+           std::any_of(bodies.begin(), bodies.end(),
+                       [](const Body &body) { return body.breakable; });
   }
 
   int Draft::n_cells() const
