@@ -114,6 +114,8 @@ namespace wall
 
     double wave_speed() const;
     double smallest_edge() const;
+    /** For Gmsh. */
+    double mesh_size() const;
     int n_cells() const;
     bool is_rigid() const;
     /** Implicit steps of large motions of what breaks: the dearest. */

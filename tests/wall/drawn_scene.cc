@@ -56,7 +56,7 @@ namespace wall
       std::string text = fmt::format(
           "SetFactory(\"OpenCASCADE\");\nMesh.MeshSizeMin = {0:.6g};\n"
           "Mesh.MeshSizeMax = {0:.6g};\n",
-          2e3 * draft.smallest_edge());
+          1e3 * draft.mesh_size());
       for (std::size_t i = 0; i < draft.bodies.size(); ++i) {
         const Body &body = draft.bodies[i];
         std::string low, size;

@@ -417,6 +417,16 @@ namespace wall
     return edge;
   }
 
+  double Draft::mesh_size() const
+  {
+    double size = 2. * smallest_edge();
+    if (iterates_on_cracks()) // a plate is not as fine all over as it is thin
+      for (const Body &body : bodies)
+        for (int d = 0; d < dim; ++d)
+          size = std::max(size, (body.high[d] - body.low[d]) / body.cells[d]);
+    return size;
+  }
+
   void Draft::end_at_half(const double speed, const int d, const double start,
                           const double away)
   {
