@@ -190,6 +190,14 @@ namespace nsfd
       return entry && (value.empty() || entry->value.text() == value);
     }
 
+    /** Impacts go through with explicit steps: those of large motions are
+     * chosen with the mesh unless the scene names a scheme. */
+    bool moves_far(ParameterFile &file)
+    {
+      const ParameterEntry *entry = file.top().find("motion");
+      return entry && entry->value.text() == "large";
+    }
+
     /** A file with what the command line says; false if it cannot be read. */
     using Parse = std::function<bool(ParameterFile &, InputErrors &)>;
     using Entries = std::vector<std::pair<std::string, std::string>>;
@@ -267,17 +275,18 @@ namespace nsfd
       ParameterFile parsed;
       InputErrors found;
       const bool can_be_read = parse(parsed, found);
-      if (can_be_read && has_entry(parsed, "Time", "scheme", "auto"))
+      const bool names_none = can_be_read && parsed.find("Time") &&
+                              !has_entry(parsed, "Time", "scheme");
+      if (can_be_read && (has_entry(parsed, "Time", "scheme", "auto") ||
+                          (names_none && moves_far(parsed))))
         return read_automatic(parse, name, has_entry(parsed, "Time", "step"),
                               errors);
       for (const Diagnostic &one : found.diagnostics())
         errors.add(one);
       if (!can_be_read)
         return nullptr;
-      const bool is_default =
-          parsed.find("Time") && !has_entry(parsed, "Time", "scheme");
       auto scene = read_parsed(parsed, name, errors);
-      if (scene && is_default)
+      if (scene && names_none)
         scene->alternative = read_alternative(parse, name);
       return scene;
     }
