@@ -14,7 +14,7 @@ namespace nsfd
     // round-off of the coordinates only: 2e-9 at 1e7 lengths of a cell.
     constexpr double round_off = 1e-8;
 
-    constexpr unsigned int least_patience = 4, most_patience = 16;
+    constexpr unsigned int least_patience = 4, most_patience = 64;
   } // namespace
 
   StepControl::StepControl(const double end, const double base,
