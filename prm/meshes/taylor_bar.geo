@@ -3,6 +3,9 @@
 If (!Exists(n))
   n = 2;  // cells along each half of the circle
 EndIf
+If (!Exists(m))
+  m = 6 * n; // layers of the quarter at the foot; n more above
+EndIf
 r = 3.2;
 l = 32.4;
 s = 0.55; // sides of the square in the middle over the radius
@@ -36,6 +39,6 @@ Transfinite Surface {1, 2, 3};
 Recombine Surface {1, 2, 3};
 Extrude {0, 0, l} {
   Surface{1, 2, 3};
-  Layers{{4 * n, 5 * n}, {0.25, 1}};
+  Layers{{m, m + n}, {0.25, 1}};
   Recombine;
 }

@@ -14,7 +14,7 @@ namespace nsfd
     // round-off of the coordinates only: 2e-9 at 1e7 lengths of a cell.
     constexpr double round_off = 1e-8;
 
-    constexpr unsigned int most_patience = 64;
+    constexpr unsigned int least_patience = 4, most_patience = 64;
   } // namespace
 
   StepControl::StepControl(const double end, const double base,
@@ -59,14 +59,16 @@ namespace nsfd
   {
     ++position_;
     ++successes_;
-    if (went_up_)
-      patience_ = 0;
-    went_up_ = level_ > 0 && position_ % 2 == 0 && 2. * step() <= ceiling_ &&
-               successes_ >= patience_;
-    if (went_up_) {
+    if (on_trial_ && successes_ >= std::max(patience_, least_patience)) {
+      patience_ /= 2;
+      on_trial_ = false;
+    }
+    if (level_ > 0 && position_ % 2 == 0 && 2. * step() <= ceiling_ &&
+        successes_ >= patience_) {
       position_ /= 2;
       --level_;
       successes_ = 0;
+      on_trial_ = true;
     }
     if (position_ == 1ull << level_) {
       ++base_count_;
@@ -81,9 +83,10 @@ namespace nsfd
     ++level_;
     position_ *= 2;
     ++n_bisections_;
-    if (went_up_)
-      patience_ = std::min(std::max(2 * patience_, 4u), most_patience);
-    went_up_ = false;
+    if (on_trial_)
+      patience_ =
+          std::min(std::max(2 * patience_, least_patience), most_patience);
+    on_trial_ = false;
     successes_ = 0;
     return true;
   }
@@ -93,7 +96,7 @@ namespace nsfd
     const Archive::Part part(archive, "step_control");
     archive.numbers("step_levels", start_, end_, base_, n_base_, base_count_,
                     position_, level_, maximum_level_, n_bisections_, ceiling_);
-    archive.numbers("step_patience", patience_, successes_, went_up_);
+    archive.numbers("step_patience", patience_, successes_, on_trial_);
   }
 
   void StepControl::limit(const double limit)
@@ -101,7 +104,7 @@ namespace nsfd
     while (step() > limit && level_ < maximum_level_) {
       ++level_;
       position_ *= 2;
-      went_up_ = false;
+      on_trial_ = false;
     }
   }
 } // namespace nsfd

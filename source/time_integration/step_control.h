@@ -8,10 +8,11 @@ namespace nsfd
    * Steps by bisection: the base step divides the time to the end evenly; level
    * l takes base / 2^l. A rejected step goes down one level at once; two
    * successes go up one level where the position allows it, so that every time
-   * is a multiple of the base step again. Where the first step up there is
-   * rejected, the next attempt waits for twice as many successes: what is hard
-   * over many steps would cost one attempt in three. Times are computed from
-   * counters, not summed.
+   * is a multiple of the base step again. Where a step up there is rejected
+   * before as many have been taken as it was waited for, and four at least, the
+   * next attempt waits for twice as many successes, else for half of them: what
+   * is hard over many steps would cost one attempt in three. Times are computed
+   * from counters, not summed.
    */
   class StepControl
   {
@@ -52,7 +53,7 @@ namespace nsfd
     unsigned int level_ = 0, maximum_level_, n_bisections_ = 0;
     unsigned int patience_ = 0;  ///< successes before the next way up
     unsigned int successes_ = 0; ///< since the last change of level
-    bool went_up_ = false;       ///< by the last success
+    bool on_trial_ = false;      ///< few successes since the way up
     double start_;
   };
 } // namespace nsfd
