@@ -20,6 +20,7 @@ namespace nsfd
     constexpr double patience = 5.;    ///< s of wall time, on a busy machine
     constexpr double interval = 0.002; ///< s of CPU between two samples
     constexpr unsigned int fewest = 2; ///< steps: the first one makes factors
+    constexpr unsigned int few = 4;    ///< steps that say little
 
     // measured, see doc/performance.md
     /// of a picture and its files, per cell and per point of a face
@@ -33,6 +34,11 @@ namespace nsfd
       return input.may_move() ? input.time.end : input.statics->until;
     }
 
+    bool is_static(const SceneInput &input)
+    {
+      return input.statics && input.statics->steps;
+    }
+
     /** The first sample of the second half, by CPU; never the last one. */
     const StepSample &middle(const std::vector<StepSample> &samples)
     {
@@ -41,6 +47,31 @@ namespace nsfd
           samples.begin(), samples.end() - 1,
           [half](const StepSample &one) { return one.cpu >= half; });
       return found == samples.end() - 1 ? *(samples.end() - 2) : *found;
+    }
+
+    StepSample operator-(const StepSample &a, const StepSample &b)
+    {
+      return {a.steps - b.steps, a.time - b.time, a.cpu - b.cpu};
+    }
+
+    /**
+     * The steps that later ones will be like: those of the second half. Where
+     * these are a few dear ones of a motion, an impact has begun, and that
+     * passes: then all but the first one, which makes factors, and the dearest.
+     */
+    StepSample like_later(const SceneInput &input,
+                          const std::vector<StepSample> &samples)
+    {
+      const StepSample half = samples.back() - middle(samples);
+      if (half.steps > few || is_static(input) || samples.size() < 4)
+        return half;
+      StepSample dearest;
+      for (std::size_t k = 2; k < samples.size(); ++k) {
+        const StepSample one = samples[k] - samples[k - 1];
+        if (one.cpu > dearest.cpu)
+          dearest = one;
+      }
+      return samples.back() - samples[1] - dearest;
     }
   } // namespace
 
@@ -137,24 +168,17 @@ namespace nsfd
     result.megabytes = megabytes;
     if (samples.size() < 2 || !(last.time > first.time))
       return result;
-    const StepSample &from = middle(samples);
-    const double end = end_of(input),
-                 left = std::max(0., end - last.time) / (last.time - from.time);
+    const StepSample like = like_later(input, samples);
+    const double left = std::max(0., end_of(input) - last.time) / like.time;
     result.known = true;
-    result.steps = last.steps + left * (last.steps - from.steps);
-    result.step = (last.cpu - from.cpu) / (last.steps - from.steps);
+    result.steps = last.steps + left * like.steps;
+    result.step = like.cpu / like.steps;
     result.pictures = n_pictures(input, result.steps);
     result.picturing =
         result.pictures * (counts.cells + counts.points) * seconds_per_item;
-    result.seconds = trial.set_up + trial.cpu + left * (last.cpu - from.cpu) +
-                     result.picturing;
-    const double later = left * (last.cpu - from.cpu);
-    result.longest = result.shortest = result.seconds;
-    if (samples.size() > 2) // as cheap as all but the first one were
-      result.shortest -=
-          std::max(0., later - std::max(0., end - last.time) /
-                                   (last.time - samples[1].time) *
-                                   (last.cpu - samples[1].cpu));
+    const double later = left * like.cpu;
+    result.seconds = trial.set_up + trial.cpu + later + result.picturing;
+    result.longest = result.seconds;
     if (may_change(input))
       result.longest += (most_growth - 1.) * later;
     if (input.output.report)
@@ -182,7 +206,7 @@ namespace nsfd
       if (input.mesh_changes())
         return "at least about " + time +
                ", more where the mesh is refined on the way";
-      if (input.statics && input.statics->steps)
+      if (is_static(input))
         return "at least about " + time +
                ", several times that where steps of the load must be bisected "
                "because faces break";
@@ -220,11 +244,6 @@ namespace nsfd
       return text;
     }
     line("time", time_text(input, forecast));
-    constexpr double clearly = 1.5;
-    if (forecast.seconds > clearly * forecast.shortest)
-      line("", fmt::format("{} if steps become as cheap again as they were "
-                           "before",
-                           Progress::duration(forecast.shortest)));
     line("", parts_text(forecast));
     line("", last.time >= end_of(input) * (1. - 1e-9)
                  ? std::string("all steps were tried")
@@ -235,6 +254,7 @@ namespace nsfd
                                Progress::duration(trial.cpu)));
     if (!trial.failure.empty())
       line("", "then a step fails: " + trial.failure);
+    constexpr double clearly = 1.5;
     if (forecast.busy > clearly)
       line("",
            fmt::format("on a core of its own; now others use it as well, and "

@@ -71,7 +71,6 @@ namespace nsfd
     double steps = 0.;     ///< of the whole run
     double step = 0.;      ///< s of CPU, of a later one
     double seconds = 0.;   ///< s of CPU, of the whole run
-    double shortest = 0.;  ///< the same if steps become cheap again
     double longest = 0.;   ///< the same where many faces break or touch
     double set_up = 0.;    ///< s of CPU
     double pictures = 0.;  ///< how many
@@ -82,7 +81,8 @@ namespace nsfd
 
   /**
    * Extrapolates: the simulated time that is left, at the rate of the second
-   * half of the trial. @p megabytes at the end of the trial.
+   * half of the trial; where that half is a few dear steps, of all but the
+   * dearest. @p megabytes at the end of the trial.
    */
   Forecast forecast(const SceneInput &input, const FirstSteps &trial,
                     const OutputCounts &counts, double megabytes);

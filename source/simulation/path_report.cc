@@ -15,15 +15,19 @@ namespace nsfd
       const TimeInput &time = input.time;
       if (!input.scheme_choice.empty())
         return input.scheme_choice;
+      const bool loads = input.statics && input.statics->steps;
       const std::string kind =
-          time.scheme.at_nodes ? "explicit steps of joined cells, no system is "
-                                 "solved"
+          loads                  ? "equilibria from one load to the next"
+          : time.scheme.at_nodes ? "explicit steps of joined cells, no system "
+                                   "is solved"
           : time.scheme.explicit_forces
               ? "the forces of the bodies are explicit, contacts are solved"
           : time.scheme.smooth ? "smooth motion, the error of a step is bounded"
                                : "implicit steps";
       return fmt::format("{}, of section Time: {}{}", time.scheme_name, kind,
-                         input.statics ? ", with equilibria" : "");
+                         loads           ? ""
+                         : input.statics ? ", after an equilibrium"
+                                         : "");
     }
 
     /** In the order in which Model decides. */
@@ -40,7 +44,7 @@ namespace nsfd
         if (input.time.scheme.at_nodes)
           return "single nodes with their points, each by itself";
         if (input.has_bonded_faces())
-          return "one matrix of all bodies, because faces are joined";
+          return "one system of all bodies, because faces are joined";
         if (input.solver.path != "auto")
           return "as section Solver says";
         if (!(crossing > 0.))
@@ -50,7 +54,7 @@ namespace nsfd
                    ? fmt::format("blocks of single bodies, because a step is "
                                  "{:.3g} crossings of a cell, at most 5",
                                  ratio)
-                   : fmt::format("one matrix of all bodies, because a step is "
+                   : fmt::format("one system of all bodies, because a step is "
                                  "{:.3g} crossings of a cell, more than 5",
                                  ratio);
       };

@@ -28,21 +28,29 @@ namespace end_to_end::test_forecast
         {"long_steps",
          scene("midplane").string(),
          {"Time/step=20 courant"},
-         "path       assembled, one matrix"},
+         "path       assembled, one system"},
         {"explicit_nodes",
          benchmark("fracture_extrinsic").string(),
          {},
          "path       nodes, single nodes"},
         {"rigid", scene("roll").string(), {}, "path       local, blocks of"},
-        {"equilibria",
+        {"loads",
+         scene("pull_out").string(),
+         {},
+         ", of section Time: equilibria from one load to the next"},
+        {"after_an_equilibrium",
          scene("static_start").string(),
          {},
-         "moreau-jean, of section Time: implicit steps, with equilibria"},
+         "path       local, blocks of"},
         {"smooth",
          scene("mode").string(),
          {"Time/scheme=arkode"},
          "the error of a step is bounded"},
-        {"mesh_that_changes", benchmark("branching").string(), {}, "local"}};
+        {"mesh_that_changes",
+         benchmark("branching").string(),
+         {},
+         "path       assembled, one system of all bodies, because faces are "
+         "joined"}};
 
     class ForecastTest : public testing::TestWithParam<Row>
     {

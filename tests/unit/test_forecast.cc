@@ -59,6 +59,18 @@ namespace nsfd::test_forecast
     EXPECT_NEAR(found.seconds, 3. + 3. + 640. * 0.02, 1e-6);
   }
 
+  // One step of an impact is as dear as a hundred others.
+  TEST(Forecasts, ADearStepPasses)
+  {
+    const auto scene = read_good(small_scene, no_pictures);
+    FirstSteps trial = trial_of(29);
+    trial.samples.push_back({30, 3e-9, trial.samples.back().cpu + 2.});
+    trial.cpu += 2.;
+    const Forecast found = forecast(*scene, trial, {}, 170.);
+    EXPECT_NEAR(found.steps, 100., 1e-9);
+    EXPECT_NEAR(found.seconds, 3. + trial.cpu + 70. * 0.02, 1e-9);
+  }
+
   TEST(Forecasts, PicturesCost)
   {
     const auto none = read_good(small_scene, no_pictures);
