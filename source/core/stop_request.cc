@@ -1,5 +1,7 @@
 #include "stop_request.h"
 
+#include "stopwatch.h"
+
 #include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -39,6 +41,7 @@ namespace nsfd::stop_request
     std::atomic<double> request_time{0.}; ///< s
     int scope_ranks = 0;                  ///< 0: not in a step
     double next_look = 0.;                ///< s
+    double deadline = 0.;                 ///< s of CPU, 0: none
 
     double seconds()
     {
@@ -144,9 +147,13 @@ namespace nsfd::stop_request
 
   Interruptible::~Interruptible() { scope_ranks = 0; }
 
+  void leave_steps_at(const double time) { deadline = time; }
+
   bool is_due(const int n_ranks)
   {
-    return scope_ranks == n_ranks && requested() &&
-           seconds() - request_time >= grace;
+    if (scope_ranks != n_ranks)
+      return false;
+    return (deadline > 0. && cpu_seconds() >= deadline) ||
+           (requested() && seconds() - request_time >= grace);
   }
 } // namespace nsfd::stop_request

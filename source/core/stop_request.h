@@ -50,6 +50,12 @@ namespace nsfd
       Interruptible &operator=(const Interruptible &) = delete;
     };
 
+    /**
+     * Also without a request, steps are left from @p time on (s of CPU of this
+     * process, as of cpu_seconds()); 0: not.
+     */
+    void leave_steps_at(double time);
+
     /** This rank of @p n_ranks wants to leave its step now. Not collective. */
     bool is_due(int n_ranks);
 

@@ -1,5 +1,7 @@
 #include "progress.h"
 
+#include "records/engineering.h"
+
 #include <fmt/format.h>
 
 #include <sys/ioctl.h>
@@ -7,17 +9,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace nsfd
 {
   namespace
   {
-    double seconds_between(const std::chrono::steady_clock::time_point &a,
-                           const std::chrono::steady_clock::time_point &b)
-    {
-      return std::chrono::duration<double>(b - a).count();
-    }
-
     /** 3.2e-6 instead of 3.2e-06, 0 instead of 0.0e+00. */
     std::string brief(const double value, const int digits)
     {
@@ -33,9 +30,28 @@ namespace nsfd
     std::size_t terminal_width()
     {
       winsize size{};
-      if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20)
+      if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
         return size.ws_col;
       return 80;
+    }
+
+    /** Of UTF-8: bytes that begin a character. */
+    std::size_t columns(const std::string &text)
+    {
+      return std::size_t(
+          std::count_if(text.begin(), text.end(), [](const char c) {
+            return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+          }));
+    }
+
+    /** "1.200 of 10.00 µs": in the unit of the end. */
+    std::string time_text(const double time, const double end)
+    {
+      const DisplayUnit unit = engineering_scale(end, "s");
+      const double whole = end / unit.factor;
+      const int digits = whole < 9.9995 ? 3 : whole < 99.995 ? 2 : 1;
+      return fmt::format("t {:.{}f} of {:.{}f} {}", time / unit.factor, digits,
+                         whole, digits, unit.unit);
     }
   } // namespace
 
@@ -47,9 +63,11 @@ namespace nsfd
   }
 
   Progress::Progress(std::ostream &out, const double end_time, const Mode mode,
-                     const unsigned int every_steps, const double every_seconds)
-      : out_(out), end_time_(end_time), mode_(mode), every_steps_(every_steps),
-        every_seconds_(every_seconds), start_(Clock::now()), last_print_(start_)
+                     const double first_seconds, const double every_seconds)
+      : out_(out), end_time_(end_time), mode_(mode),
+        every_seconds_(every_seconds),
+        next_seconds_(mode == Mode::lines ? first_seconds : 0.),
+        start_(Clock::now())
   {
   }
 
@@ -78,50 +96,70 @@ namespace nsfd
     return fmt::format("{} d {:02} h", s / 86400, s / 3600 % 24);
   }
 
-  std::string Progress::live_line(const HistoryRow &row) const
+  std::string Progress::live_line(const HistoryRow &row, const double end_time,
+                                  const double remaining,
+                                  const std::size_t width)
   {
     const double share =
-        end_time_ > 0. ? std::clamp(row.time / end_time_, 0., 1.) : 0.;
-    const double elapsed = seconds_between(start_, Clock::now());
-    const double advanced = row.time - start_time_;
-    const double remaining =
-        advanced > 0. ? elapsed * (end_time_ - row.time) / advanced : NAN;
-    return fmt::format("step {}  t {:.4e}  {:3.0f} %  ETA {}  broken {}  "
-                       "newton {}  res {}",
-                       row.step, row.time, std::floor(100. * share),
-                       duration(std::max(remaining, 0.)),
-                       brief(row.broken_area, 1), row.newton,
-                       brief(row.residual, 1));
+        end_time > 0. ? std::clamp(row.time / end_time, 0., 1.) : 0.;
+    const std::string parts[] = {
+        fmt::format("{:3.0f} %", std::floor(100. * share)),
+        "ETA " + duration(remaining),
+        time_text(row.time, end_time),
+        fmt::format("step {}", row.step),
+        fmt::format("broken {}", brief(row.broken_area, 1)),
+        fmt::format("active {}", row.active),
+        fmt::format("newton {}", row.newton),
+        "res " + brief(row.residual, 1)};
+    std::string text;
+    for (const std::string &part : parts) {
+      const std::string longer = text + (text.empty() ? "" : "  ") + part;
+      if (columns(longer) > width)
+        break;
+      text = longer;
+    }
+    return text;
+  }
+
+  /** By the second half of what has passed: steps become dearer. */
+  double Progress::remaining(const double elapsed, const double time)
+  {
+    if (elapsed >= 2. * marks_.back().elapsed) {
+      if (marks_.size() > 1)
+        marks_.erase(marks_.begin());
+      marks_.push_back({elapsed, time});
+    }
+    const Mark &from = marks_.front();
+    return time > from.time
+               ? std::max(0., (elapsed - from.elapsed) * (end_time_ - time) /
+                                  (time - from.time))
+               : std::numeric_limits<double>::quiet_NaN();
   }
 
   void Progress::step(const HistoryRow &row)
   {
     if (mode_ == Mode::quiet)
       return;
-
-    // also right for a run that starts at a stored state
-    if (n_steps_++ == 0)
-      start_time_ = row.time - row.time_step;
-    last_ = row;
-    printed_ = false;
-
-    const auto now = Clock::now();
-    const double waited = seconds_between(last_print_, now);
-    const bool first = n_steps_ == 1;
-    if (mode_ == Mode::terminal) {
-      if (!first && waited < 0.1)
-        return;
-      out_ << "\r\033[K" << live_line(row).substr(0, terminal_width() - 1)
-           << std::flush;
-      live_ = true;
-    } else {
-      const bool due = every_steps_ != 0 && row.step % every_steps_ == 0;
-      if (!first && !due && waited < every_seconds_)
-        return;
+    if (mode_ == Mode::every_step) {
       out_ << line(row) << '\n' << std::flush;
-      printed_ = true;
+      return;
     }
-    last_print_ = now;
+    const double elapsed =
+        std::chrono::duration<double>(Clock::now() - start_).count();
+    if (marks_.empty()) // also right for a run that starts at a stored state
+      marks_.push_back({0., row.time - row.time_step});
+    const double left = remaining(elapsed, row.time);
+    if (elapsed < next_seconds_)
+      return;
+    const bool is_live = mode_ == Mode::terminal;
+    const std::string text =
+        live_line(row, end_time_, left, is_live ? terminal_width() - 1 : 120);
+    if (is_live)
+      out_ << "\r\033[K" << text << std::flush;
+    else
+      out_ << text << '\n' << std::flush;
+    live_ = is_live;
+    next_seconds_ = elapsed + (is_live ? 0.1 : every_seconds_);
   }
 
   void Progress::message(const std::string &text)
@@ -134,12 +172,7 @@ namespace nsfd
 
   void Progress::finish()
   {
-    if (mode_ == Mode::quiet)
-      return;
     clear_live_line();
-    if (!printed_)
-      out_ << line(last_) << '\n';
-    printed_ = true;
     out_ << std::flush;
   }
 

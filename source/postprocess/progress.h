@@ -5,27 +5,28 @@
 #include <chrono>
 #include <ostream>
 #include <string>
+#include <vector>
 
 namespace nsfd
 {
   /**
-   * What a run says while it runs: on a terminal one line that is rewritten,
-   * in a file or pipe an aligned line every few steps or seconds.
+   * What a run says while it runs: on a terminal one line that is rewritten, in
+   * a file or pipe a line a minute at most, or one for every step if asked for.
    */
   class Progress
   {
   public:
-    enum class Mode { quiet, lines, terminal };
+    enum class Mode { quiet, lines, every_step, terminal };
 
     /** quiet if asked for, else what standard output is. */
     static Mode mode_for_stdout(bool quiet);
 
     /**
-     * In `lines` mode a row is printed after @p every_steps steps or
-     * @p every_seconds seconds, whichever comes first.
+     * In `lines` mode there is a line @p first_seconds after the start, and
+     * then one every @p every_seconds.
      */
     Progress(std::ostream &out, double end_time, Mode mode,
-             unsigned int every_steps = 100, double every_seconds = 5.);
+             double first_seconds = 10., double every_seconds = 60.);
 
     /** Call after every accepted step. */
     void step(const HistoryRow &row);
@@ -33,30 +34,39 @@ namespace nsfd
     /** A line of its own that stays (warnings); also when not due. */
     void message(const std::string &text);
 
-    /** Prints the last row if it was not, and leaves the live line. */
+    /** Leaves the live line. */
     void finish();
 
     /** step 12  t 1.2000e-04  active 34  broken 3.2e-6  newton 4 ... */
     static std::string line(const HistoryRow &row);
+
+    /**
+     * " 12 %  t 1.20 of 10.0 µs  ETA 4 min 07 s  step 120 ...": what follows
+     * from the left in at most @p width columns, no part of it cut.
+     * @p remaining in s, NaN if not known.
+     */
+    static std::string live_line(const HistoryRow &row, double end_time,
+                                 double remaining, std::size_t width);
 
     /** 9 s, 4 min 07 s, 3 h 25 min, 2 d 04 h */
     static std::string duration(double seconds);
 
   private:
     using Clock = std::chrono::steady_clock;
+    /** How far the run was after so many seconds. */
+    struct Mark {
+      double elapsed = 0., time = 0.;
+    };
 
-    std::string live_line(const HistoryRow &row) const;
+    double remaining(double elapsed, double time);
     void clear_live_line();
 
     std::ostream &out_;
     double end_time_;
     Mode mode_;
-    unsigned int every_steps_;
-    double every_seconds_;
-    Clock::time_point start_, last_print_;
-    HistoryRow last_;
-    double start_time_ = 0.;
-    unsigned int n_steps_ = 0;
-    bool printed_ = true, live_ = false;
+    double every_seconds_, next_seconds_;
+    Clock::time_point start_;
+    std::vector<Mark> marks_; ///< the last two, each after twice the seconds
+    bool live_ = false;
   };
 } // namespace nsfd

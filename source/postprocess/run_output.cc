@@ -12,6 +12,7 @@
 #include "nsfd/core/archive.h"
 #include "nsfd/scene/scene_input.h"
 #include "progress.h"
+#include "records/run_options.h"
 #include "report.h"
 #include "summary_file.h"
 
@@ -23,33 +24,37 @@ namespace nsfd
 {
   template <int dim>
   RunOutput<dim>::RunOutput(const SceneInput &input, const RunInfo &info,
-                            const bool quiet, const bool verbose,
+                            const RunOptions &options,
                             const Discretization<dim> &discretization,
                             const Communicator &communicator,
-                            const std::vector<ObservableRecord> &observables,
-                            const bool resumes)
+                            const std::vector<ObservableRecord> &observables)
       : input_(input), info_(info), communicator_(communicator)
   {
-    const std::string &directory = input.output.directory;
     for (const unsigned int b : discretization.driven_boundaries())
       driven_.push_back(input.boundaries[b].name);
     units_ = units_text(dim, driven_, observables);
-    if (communicator.is_root()) {
-      if (!resumes) {
-        write_descriptions();
-        history_file_ = std::make_unique<HistoryFile>(
-            directory + "/history.csv", driven_, dim);
-      }
-      progress_ =
-          verbose
-              ? std::make_unique<Progress>(std::cout, input.time.end,
-                                           Progress::Mode::lines, 1)
-              : std::make_unique<Progress>(std::cout, input.time.end,
-                                           Progress::mode_for_stdout(quiet));
-    }
+    if (options.check)
+      return;
+    if (communicator.is_root())
+      open_files(options);
     if (input.output.fields || input.output.report)
-      fields_ = std::make_unique<FieldOutput<dim>>(
-          directory, discretization, communicator, input.output.hdf5);
+      fields_ = std::make_unique<FieldOutput<dim>>(input.output.directory,
+                                                   discretization, communicator,
+                                                   input.output.hdf5);
+  }
+
+  template <int dim>
+  void RunOutput<dim>::open_files(const RunOptions &options)
+  {
+    if (!options.resume) {
+      write_descriptions();
+      history_file_ = std::make_unique<HistoryFile>(
+          input_.output.directory + "/history.csv", driven_, dim);
+    }
+    progress_ = std::make_unique<Progress>(
+        std::cout, input_.time.end,
+        options.verbose ? Progress::Mode::every_step
+                        : Progress::mode_for_stdout(options.quiet));
   }
 
   template <int dim>
@@ -146,11 +151,11 @@ namespace nsfd
         next_fields_ =
             (std::floor(state.time / output.fields_every * (1. + 1e-12)) + 1.) *
             output.fields_every;
-      if (output.fields)
+      if (fields_ && output.fields)
         fields_->write(state, time_step, fragments);
       if (fragments_)
         fragments_->write(state, fragments);
-      if (output.report) {
+      if (fields_ && output.report) {
         snapshots_.push_back(fields_->snapshot(state, fragments));
         thin_snapshots();
       }

@@ -21,6 +21,7 @@ namespace nsfd
   class Progress;
   struct Certificate;
   struct RunFindings;
+  struct RunOptions;
 
   /** Everything that a run writes, and what it says while it runs. */
   template <int dim>
@@ -29,13 +30,14 @@ namespace nsfd
   public:
     /**
      * Starts all files in the claimed directory of the input, or, if the run
-     * @p resumes, leaves them to serialize(). A @p verbose run says every step.
+     * resumes, leaves them to serialize(). A verbose run says every step; one
+     * that is only checked writes and says nothing.
      */
-    RunOutput(const SceneInput &input, const RunInfo &info, bool quiet,
-              bool verbose, const Discretization<dim> &discretization,
+    RunOutput(const SceneInput &input, const RunInfo &info,
+              const RunOptions &options,
+              const Discretization<dim> &discretization,
               const Communicator &communicator,
-              const std::vector<ObservableRecord> &observables,
-              bool resumes = false);
+              const std::vector<ObservableRecord> &observables);
     ~RunOutput();
 
     /** Of a scene that has fragments. */
@@ -82,6 +84,7 @@ namespace nsfd
   private:
     void keep(const HistoryRow &row);
     void write_descriptions() const;
+    void open_files(const RunOptions &options);
     void serialize_history(Archive &archive);
     void thin_snapshots();
     void write_page(const Summary &summary, const RunFindings &findings);

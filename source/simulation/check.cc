@@ -470,8 +470,6 @@ namespace nsfd
 
     std::cout << fmt::format("{}: checked, nothing is run\n", input.file);
     print_mesh(input, mesh, discretization, counts, step);
-    if (!input.scheme_choice.empty())
-      std::cout << "  scheme     " << input.scheme_choice << "\n";
     std::cout << limiting;
     if (advisor.young > 0.)
       advisor.print_stiffness();

@@ -1,33 +1,18 @@
 #include "choose_scheme.h"
 
 #include "model.h"
+#include "silence.h"
 
 #include "records/engineering.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <iostream>
-#include <sstream>
 
 namespace nsfd
 {
   namespace
   {
-    /** The same warnings come with the scene that is chosen. */
-    class Silence
-    {
-    public:
-      Silence() : before_(std::cerr.rdbuf(unheard_.rdbuf())) {}
-      ~Silence() { std::cerr.rdbuf(before_); }
-      Silence(const Silence &) = delete;
-      Silence &operator=(const Silence &) = delete;
-
-    private:
-      std::ostringstream unheard_;
-      std::streambuf *before_;
-    };
-
     SceneInput implicit(const SceneInput &input, const std::string &why)
     {
       SceneInput scene = input;
@@ -58,7 +43,7 @@ namespace nsfd
       Model<dim> model;
       std::vector<std::string> problems;
       {
-        const Silence silence;
+        const Silence silence; // the same warnings come with the one chosen
         problems = model.build(*automatic.longest_steps, communicator);
       }
       if (!problems.empty())
@@ -76,7 +61,7 @@ namespace nsfd
           as_given ? *automatic.given_steps : *automatic.longest_steps;
       return {
           n_explicit > ratio * n_implicit ? nullptr : &scene,
-          fmt::format("{:.3g} explicit steps of {} or {:.3g} implicit ones of "
+          fmt::format("{:.0f} explicit steps of {} or {:.0f} implicit ones of "
                       "{}, each at the cost of some {:g} explicit ones",
                       n_explicit, engineering(explicit_step, "s"), n_implicit,
                       engineering(step, "s"), ratio)};

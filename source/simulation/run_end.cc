@@ -13,10 +13,14 @@ namespace nsfd
 {
   namespace
   {
-    std::string energies(const Summary &summary, const double broken_area)
+    std::string happened(const Summary &summary, const double broken_area)
     {
       const Units units(summary.dimension);
-      std::string text = "energy at the end:";
+      std::string text = fmt::format(
+          "{} step{} to t = {} in {}; energy at the end:", summary.steps,
+          summary.steps == 1 ? "" : "s",
+          engineering(summary.final_time, "s", 4),
+          Progress::duration(summary.wall_seconds));
       const auto add = [&](const std::string &name, const double value) {
         if (value != 0.)
           text += " " + name + " " + engineering(value, units.energy, 4) + ",";
@@ -50,10 +54,9 @@ namespace nsfd
           seconds += value;
       const double steps = std::max(1., double(s.steps));
       return wrapped(
-          fmt::format("{} step{} in {}, at most {:.0f} MB; per step {}, Newton "
+          fmt::format("{:.3g} s of CPU, at most {:.0f} MB; per step {}, Newton "
                       "{:.2f}, Krylov {:.1f}, sweeps {:.1f}",
-                      s.steps, s.steps == 1 ? "" : "s",
-                      Progress::duration(s.wall_seconds), s.peak_memory_mb,
+                      s.cpu_seconds, s.peak_memory_mb,
                       engineering(seconds / steps, "s"), sum("newton") / steps,
                       sum("krylov") / steps,
                       counter("gauss_seidel_sweeps") / steps),
@@ -63,16 +66,19 @@ namespace nsfd
 
   std::string run_end_text(const Summary &summary,
                            const Certificate &certificate,
-                           const double broken_area, const std::string &page,
+                           const double broken_area, const std::string &files,
                            const bool verbose)
   {
     std::string text = certificate_text(certificate);
-    text += energies(summary, broken_area);
+    text += happened(summary, broken_area);
+    if (!summary.errors.empty())
+      text += "  compared with what is known, relative or in SI units:\n";
     for (const auto &[name, value] : summary.errors)
-      text += fmt::format("  {:<28} {:.6g}\n", name, value);
-    text += costs(summary);
-    if (verbose)
+      text += fmt::format("    {:<28} {:.4g}\n", name, value);
+    if (verbose) {
+      text += costs(summary);
       text += cost_text(summary.cost, summary.peak_memory_mb);
-    return text + "  " + page + "\n";
+    }
+    return text + wrapped(files, 2);
   }
 } // namespace nsfd

@@ -8,11 +8,11 @@
 namespace nsfd
 {
   /**
-   * The last lines of a run: certificate, energies, errors, where its files
-   * are, and what it cost; all of the profile if @p verbose. Lines have at most
-   * 80 columns but for names of folders and the profile.
+   * The last lines of a run: certificate, what happened with its energies and
+   * errors, if @p verbose what it cost, and a sentence on its @p files. Lines
+   * have at most 80 columns but for names of folders and the profile.
    */
   std::string run_end_text(const Summary &summary,
                            const Certificate &certificate, double broken_area,
-                           const std::string &page, bool verbose);
+                           const std::string &files, bool verbose);
 } // namespace nsfd

@@ -15,6 +15,21 @@
 
 namespace nsfd
 {
+  namespace
+  {
+    std::string files_text(const OutputInput &output)
+    {
+      if (!output.report)
+        return "no pictures were asked for; numbers: " + output.directory + "/";
+      std::string text = "pictures: " + output.directory + "/report.html";
+      if (output.fields)
+        text += fmt::format("; for ParaView: fields.{0} and interfaces.{0} "
+                            "beside it",
+                            output.hdf5 ? "xdmf" : "pvd");
+      return text;
+    }
+  } // namespace
+
   template <int dim>
   RunRecorder<dim>::RunRecorder(const SceneInput &input,
                                 const RunOptions &options,
@@ -87,12 +102,10 @@ namespace nsfd
     const RunInfo info =
         run_info(input_, options_, model_, unsigned(communicator_.size()));
     output_ = std::make_unique<RunOutput<dim>>(
-        input_, info, options_.quiet, options_.verbose, *model_.discretization,
-        communicator_,
-        observers_ ? observers_->records() : std::vector<ObservableRecord>(),
-        options_.resume);
-    if (has_fragments(input_, *model_.discretization, *fragments_,
-                      communicator_)) {
+        input_, info, options_, *model_.discretization, communicator_,
+        observers_ ? observers_->records() : std::vector<ObservableRecord>());
+    if (!options_.check && has_fragments(input_, *model_.discretization,
+                                         *fragments_, communicator_)) {
       std::optional<State> given; // else it is `state`
       if (input_.mesh_changes())
         given = model_.initial_state();
@@ -102,9 +115,9 @@ namespace nsfd
                               model_.moving.get(), given ? *given : state),
           communicator_, options_.resume));
     }
-    if (observers_ && !options_.resume)
+    if (observers_ && !options_.resume && !options_.check)
       observers_->start_files();
-    if (communicator_.is_root() && !options_.quiet)
+    if (communicator_.is_root() && !options_.quiet && !options_.check)
       print_opening(input_, info, summary_, model_.control->base_step(),
                     model_.discretization->crossing_time());
     tally_.set_up();
@@ -275,12 +288,9 @@ namespace nsfd
         certify(run_facts(input_, model_, tally_.solved_steps(), *extremes_,
                           tally_.watch(), state, s, communicator_));
     output_->write_summary(s, certificate);
-    const auto &output = input_.output;
     if (communicator_.is_root() && !options_.quiet)
       std::cout << run_end_text(s, certificate, state.broken_area,
-                                output.directory +
-                                    (output.report ? "/report.html" : "/"),
-                                options_.verbose);
+                                files_text(input_.output), options_.verbose);
     return certificate.is_ok();
   }
 

@@ -2,14 +2,18 @@
 
 #include "check.h"
 #include "choose_scheme.h"
+#include "forecast.h"
+#include "path_report.h"
 #include "print_problems.h"
 #include "run_store.h"
+#include "silence.h"
 
 #include "core/cost.h"
 #include "core/exit_code.h"
 #include "core/output_folder.h"
 #include "core/pages_of_zeros.h"
 #include "core/stop_request.h"
+#include "core/stopwatch.h"
 #include "state/point_fields.h"
 
 #include <fmt/format.h>
@@ -33,6 +37,7 @@ namespace nsfd
     private:
       bool build();
       int check();
+      FirstSteps try_steps(double set_up);
       bool claim_folder(bool resumes);
       bool set_state(const std::optional<FoundCheckpoint> &found);
       int resume(std::optional<FoundCheckpoint> &found);
@@ -55,7 +60,7 @@ namespace nsfd
       TimeStepping<dim> &steps_ = parts_.steps;
       RunRecorder<dim> &recorder_ = parts_.recorder;
       State &state_ = parts_.state;
-      std::unique_ptr<RunStore<dim>> store_;
+      std::unique_ptr<RunStore<dim>> store_; ///< null: only checked
       bool certified_ = false;
     };
 
@@ -119,10 +124,66 @@ namespace nsfd
     template <int dim>
     int Simulation<dim>::check()
     {
-      return print_check<dim>(
+      const double set_up = cpu_seconds();
+      const int code = print_check<dim>(
           input_, *model_.triangulation, *model_.discretization,
           model_.stepper.get(), model_.delassus.get(),
           model_.dynamic_control(input_, 0.)->base_step(), communicator_);
+      if (code != exit_code::done)
+        return code;
+      print_path(input_, model_, communicator_);
+      const OutputCounts counts = {
+          double(model_.discretization->cells().n_global),
+          double(communicator_.sum_integer(
+              model_.discretization->points().n_owned))};
+      const FirstSteps trial = try_steps(set_up);
+      const double megabytes = communicator_.max(peak_memory_mb());
+      if (communicator_.is_root())
+        std::cout << forecast_text(input_, trial,
+                                   forecast(input_, trial, counts, megabytes));
+      return code;
+    }
+
+    /** The first ones of the run, without a file. Collective. */
+    template <int dim>
+    FirstSteps Simulation<dim>::try_steps(const double set_up)
+    {
+      const Silence silence; // it is the run that says what happens
+      StepTrial trial(communicator_, set_up);
+      const double before = cpu_seconds();
+      std::string failure;
+      try {
+        if (!set_state({}))
+          return trial.finish();
+        recorder_.open(state_);
+        if (!input_.may_move())
+          model_.forget_dynamics();
+        trial.begin(set_up + cpu_seconds() - before, state_.time);
+        try {
+          const stop_request::Interruptible interruptible(communicator_.size());
+          steps_.start(state_);
+        } catch (const StepRejected &rejected) { // on all ranks
+          failure = rejected.what();
+        }
+        recorder_.start(state_);
+        State next;
+        if (!steps_.integrator().keeps_motion())
+          next = state_;
+        while (failure.empty() && !steps_.finished(state_) && trial.goes_on()) {
+          const unsigned int step = state_.step;
+          advance(next, failure);
+          if (state_.step > step)
+            trial.add(state_.time);
+        }
+      } catch (const StopRequested &) {
+        trial.leave();
+      } catch (const std::exception &error) {
+        if (communicator_.size() > 1) // others may wait for this one
+          throw;
+        failure = error.what();
+      }
+      trial.fail(failure);
+      return trial.finish();
     }
 
     /** One run in a folder at a time. Collective. */
@@ -260,7 +321,8 @@ namespace nsfd
         return false;
       next = state_;
       recorder_.change_mesh(state_);
-      store_->mesh_changed();
+      if (store_)
+        store_->mesh_changed();
       return true;
     }
 
@@ -281,11 +343,13 @@ namespace nsfd
         const Charge charge(Cost::set_up);
         if (parts_.adaptive->accept(state_)) {
           recorder_.change_mesh(state_);
-          store_->mesh_changed();
+          if (store_)
+            store_->mesh_changed();
         }
       }
       const Charge charge(Cost::output);
-      store_->store_if_due();
+      if (store_)
+        store_->store_if_due();
     }
 
     /** The last good state is stored, with a line to paste. */

@@ -183,29 +183,53 @@ namespace output_checks::test_output
                     "krylov 81 res 8.1e-11 defect 2e-13");
   }
 
-  TEST(Progress, LinesAreDueEveryFewSteps)
+  std::string steps_to(const unsigned int n, Progress progress,
+                       const std::ostringstream &out)
   {
-    std::ostringstream out;
-    Progress progress(out, 1., Progress::Mode::lines, 10, 1e9);
-    for (unsigned int step = 1; step <= 25; ++step)
+    for (unsigned int step = 1; step <= n; ++step)
       progress.step(history_row(step));
     progress.message("careful");
     progress.finish();
-    // 1, 10, 20, the message and 25
-    EXPECT_EQ(n_times(out.str(), "\n"), 5u);
-    EXPECT_EQ(out.str().find('\r'), std::string::npos);
+    return out.str();
+  }
 
-    std::ostringstream silence;
-    Progress quiet(silence, 1., Progress::Mode::quiet);
-    quiet.step(history_row(1));
-    quiet.finish();
-    EXPECT_EQ(silence.str(), "");
+  TEST(Progress, LinesByTheClock)
+  {
+    using Mode = Progress::Mode;
+    std::ostringstream pipe, first, all, silence, terminal;
+    EXPECT_EQ(steps_to(25, {pipe, 1., Mode::lines}, pipe), "careful\n")
+        << "a run of less than ten seconds says nothing of its steps";
+    const std::string one = steps_to(25, {first, 1., Mode::lines, 0.}, first);
+    EXPECT_EQ(n_times(one, "\n"), 2u) << "then a minute passes\n" << one;
+    EXPECT_EQ(one.find('\r'), std::string::npos);
+    EXPECT_EQ(n_times(steps_to(25, {all, 1., Mode::every_step}, all), "step "),
+              25u);
+    EXPECT_EQ(steps_to(25, {silence, 1., Mode::quiet}, silence), "");
 
-    std::ostringstream terminal;
-    Progress live(terminal, 1e-11, Progress::Mode::terminal);
+    Progress live(terminal, 1e-11, Mode::terminal);
     live.step(history_row(1));
     EXPECT_NE(terminal.str().find("100 %"), std::string::npos);
     EXPECT_EQ(terminal.str().find('\n'), std::string::npos);
+  }
+
+  // Parts that do not fit are left out; no number is cut.
+  TEST(Progress, NarrowTerminals)
+  {
+    HistoryRow row;
+    row.step = 1234;
+    row.time = 2.5e-6;
+    row.broken_area = 3.2e-6;
+    row.active = 34;
+    const auto line = [&](const std::size_t width) {
+      return Progress::live_line(row, 40e-6, 247., width);
+    };
+    EXPECT_EQ(line(200), "  6 %  ETA 4 min 07 s  t 2.50 of 40.00 µs  step 1234"
+                         "  broken 3.2e-6  active 34  newton 0  res 0");
+    EXPECT_EQ(line(52), "  6 %  ETA 4 min 07 s  t 2.50 of 40.00 µs  step 1234");
+    EXPECT_EQ(line(51), "  6 %  ETA 4 min 07 s  t 2.50 of 40.00 µs");
+    EXPECT_EQ(line(21), "  6 %  ETA 4 min 07 s");
+    EXPECT_EQ(line(20), "  6 %");
+    EXPECT_EQ(line(3), "");
   }
 
   TEST(Progress, Durations)
