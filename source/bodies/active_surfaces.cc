@@ -2,11 +2,13 @@
 
 #include "contact_detection/flat_sides.h"
 #include "core/disjoint_sets.h"
+#include "contact_detection/touching_rules.h"
 #include "core/gather.h"
 
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace nsfd
 {
@@ -32,7 +34,8 @@ namespace nsfd
   {
     const int f = cells_.kind_of(cell, face);
     return f < 0 ? f == SurfaceCells<dim>::boundary
-                 : separated_[std::size_t(f)] != 0;
+                 : separated_[std::size_t(f)] ||
+                       opening_[std::size_t(f)] == Opening::half;
   }
 
   /** Normals at rest of the surfaces that meet at the nodes of rigid bodies. */
@@ -93,7 +96,7 @@ namespace nsfd
   {
     const auto &points = discretization_.points();
     separated_.resize(cells_.mesh_faces().size(), 0);
-    opened_.resize(separated_.size(), 0);
+    opening_.resize(separated_.size(), Opening::none);
     std::vector<int> changed;
     for (std::size_t f = 0; f < points.faces.size(); ++f) {
       const int face = cells_.mesh_face(f);
@@ -102,13 +105,8 @@ namespace nsfd
       char now = 0;
       for (unsigned int i = 0; i < points.faces[f].count; ++i)
         now |= state.kind[points.faces[f].first + i] == PointKind::separated;
-      if (!wholes_.node.empty() && !opened_[std::size_t(face)])
-        for (unsigned int i = 0; i < points.faces[f].count; ++i)
-          if (const PointKind kind = state.kind[points.faces[f].first + i];
-              kind != PointKind::bonded && kind != PointKind::separated) {
-            opened_[std::size_t(face)] = 1;
-            known_ = false;
-          }
+      if (!wholes_.node.empty())
+        share_openings(state, f);
       if (now != separated_[std::size_t(face)])
         changed.push_back(face);
     }
@@ -119,6 +117,36 @@ namespace nsfd
     return true;
   }
 
+  /** Of face @p f of the points, whose cells hang together by nodes. */
+  template <int dim>
+  void ActiveSurfaces<dim>::share_openings(const State &state,
+                                           const std::size_t f)
+  {
+    const auto &points = discretization_.points().faces[f];
+    Opening opening = Opening::none;
+    for (unsigned int i = points.first; i < points.first + points.count; ++i) {
+      const PointKind kind = state.kind[i];
+      if (kind == PointKind::free)
+        opening = Opening::half;
+      else if (opening == Opening::none && kind != PointKind::bonded &&
+               kind != PointKind::separated)
+        opening = Opening::begun;
+    }
+    Opening &known = opening_[std::size_t(cells_.mesh_face(f))];
+    if (opening == known)
+      return;
+    known = opening;
+    known_ = false;
+  }
+
+  template <int dim>
+  bool ActiveSurfaces<dim>::has_opened(const unsigned int cell,
+                                       const unsigned int face) const
+  {
+    const int f = cells_.kind_of(cell, face);
+    return f >= 0 && opening_[std::size_t(f)] != Opening::none;
+  }
+
   template <int dim>
   void ActiveSurfaces<dim>::set_surfaces()
   {
@@ -126,13 +154,16 @@ namespace nsfd
     set_.point_origins.clear();
     set_.point_places.clear();
     set_.facet_cells.clear();
+    set_.facet_faces.clear();
     for (unsigned int c = 0; c < cells_.size(); ++c) {
       const unsigned int b = table_.body_of_cell[c];
       if (cells_.ball_radius(b) > 0. || !blocks_.may_touch(b))
         continue;
       for (unsigned int f = 0; f < cells_.faces(c).size(); ++f)
         if (is_surface(c, f))
-          add_face(c, f);
+          add_face(c, f, true);
+        else if (dim == 2 && has_opened(c, f))
+          add_face(c, f, false);
     }
     for (unsigned int b = 0; b < table_.bodies.size(); ++b)
       if (cells_.ball_radius(b) > 0.)
@@ -291,7 +322,21 @@ namespace nsfd
   }
 
   template <int dim>
-  void ActiveSurfaces<dim>::add_face(const unsigned int c, const unsigned int f)
+  double ActiveSurfaces<dim>::unseen_slip(const unsigned int c,
+                                          const unsigned int f) const
+  {
+    const int face = cells_.kind_of(c, f);
+    if (face < 0 || opening_[std::size_t(face)] != Opening::half)
+      return 0.;
+    double measure = 0.;
+    for (const double weight : cells_.faces(c)[f].weights)
+      measure += weight;
+    return inset * (dim == 2 ? measure : std::sqrt(measure));
+  }
+
+  template <int dim>
+  void ActiveSurfaces<dim>::add_face(const unsigned int c, const unsigned int f,
+                                     const bool touches)
   {
     const FaceNodes<dim> &face = cells_.faces(c)[f];
     const std::size_t first = cells_.first_node(c);
@@ -304,7 +349,8 @@ namespace nsfd
       facet.body = table_.body_of_cell[c];
       facet.whole = wholes_.of_cell.empty() ? facet.body : wholes_.of_cell[c];
       facet.key = std::uint64_t(places_.of_node(c, f, 0)) * pieces_per_face + p;
-      for (unsigned int v = 0; v < facet.n_vertices; ++v) {
+      facet.touches = touches;
+      for (unsigned int v = 0; touches && v < facet.n_vertices; ++v) {
         const unsigned int node = face.pieces[p][v];
         if (has_point[node])
           continue;
@@ -321,6 +367,7 @@ namespace nsfd
       }
       set_.surfaces.facets.push_back(facet);
       set_.facet_cells.push_back(c);
+      set_.facet_faces.push_back(f);
     }
   }
 
@@ -360,8 +407,8 @@ namespace nsfd
       if (input_.obstacles[o].where.kind == Where::Kind::all)
         for (unsigned int c = 0; c < cells_.size(); ++c)
           for (unsigned int f = 0; f < cells_.faces(c).size(); ++f)
-            if (const int face = cells_.kind_of(c, f);
-                face >= 0 && (is_surface(c, f) || opened_[std::size_t(face)]))
+            if (cells_.kind_of(c, f) >= 0 &&
+                (is_surface(c, f) || has_opened(c, f)))
               obstacle_faces_.push_back({c, f, o});
   }
 

@@ -47,6 +47,7 @@ namespace nsfd
       wholes_ = std::move(wholes);
       known_ = false;
     }
+    const Wholes &wholes() const { return wholes_; }
     /** See SurfaceCells::merged(). */
     unsigned int merged(const std::size_t node) const
     {
@@ -62,7 +63,7 @@ namespace nsfd
       std::vector<Origin> point_origins;
       std::vector<std::size_t> point_places;
       std::vector<std::pair<unsigned int, unsigned int>> points_by_vertex;
-      std::vector<unsigned int> facet_cells;
+      std::vector<unsigned int> facet_cells, facet_faces; ///< of the cell
     };
     Set &set() { return set_; }
     const Set &set() const { return set_; }
@@ -83,6 +84,10 @@ namespace nsfd
      */
     bool is_corner(unsigned int cell, unsigned int face,
                    unsigned int node) const;
+    /** How far a face that still holds, and is a surface since one of its
+        points has broken or slid by this, has slid before, m; 0: it does not
+        hold. */
+    double unseen_slip(unsigned int cell, unsigned int face) const;
     /** Of vertices, dim each. */
     const double *positions() const { return x_.data(); }
     /** Theirs in another state, say at the end of the step. Collective. */
@@ -91,14 +96,16 @@ namespace nsfd
 
   private:
     bool is_surface(unsigned int cell, unsigned int face) const;
+    bool has_opened(unsigned int cell, unsigned int face) const;
     bool share_separated(const State &state);
+    void share_openings(const State &state, std::size_t face);
     void set_surfaces();
     void set_sides();
     void set_moving_nodes();
     void set_pieces();
     void share_rest();
     void share_motion(const State &old);
-    void add_face(unsigned int cell, unsigned int face);
+    void add_face(unsigned int cell, unsigned int face, bool touches);
     bool is_behind(unsigned int vertex, unsigned int facet) const;
     void add_obstacle_faces();
 
@@ -116,10 +123,15 @@ namespace nsfd
       Vector normal;
     };
     std::unordered_map<unsigned int, std::vector<Side>> sides_at_;
-    /// per mesh face; where cells hang together, those that are open somewhere:
-    /// corners that they free may touch an obstacle
-    std::vector<char> separated_, opened_;
-    Wholes wholes_; ///< empty: every body is one
+    /// how far a face that still holds somewhere has opened
+    enum class Opening : char {
+      none,
+      begun, ///< corners that it frees may touch an obstacle
+      half   ///< free at one of its points: nothing covers its sides there
+    };
+    std::vector<char> separated_;  ///< per mesh face
+    std::vector<Opening> opening_; ///< where cells hang together
+    Wholes wholes_;                ///< empty: every body is one
     /// by cell: what hangs together by faces that hold; of what has no wholes
     std::vector<unsigned int> piece_of_cell_;
     bool known_ = false;

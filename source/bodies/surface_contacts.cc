@@ -106,6 +106,26 @@ namespace nsfd
         state.surface_contact[places_.of_ball(b)] |= released;
   }
 
+  template <int dim>
+  void
+  SurfaceContacts<dim>::set_wholes(typename ActiveSurfaces<dim>::Wholes wholes,
+                                   State &state)
+  {
+    const auto &before = active_.wholes().node;
+    std::vector<char> split(wholes.node.size(), 0);
+    for (std::size_t k = 0; k < before.size(); ++k)
+      if (wholes.node[k] != before[k])
+        split[before[k]] = 1;
+    for (unsigned int c = 0; c < cells_.size() && !before.empty(); ++c)
+      for (unsigned int f = 0; f < cells_.faces(c).size(); ++f) {
+        const auto &nodes = cells_.faces(c)[f].nodes;
+        for (unsigned int j = 0; j < nodes.size(); ++j)
+          if (split[before[cells_.first_node(c) + nodes[j]]])
+            state.surface_contact[places_.of_node(c, f, j)] |= released;
+      }
+    active_.set_wholes(std::move(wholes));
+  }
+
   /** Which sides points were over at the start of the step: of several the
       one that they are deepest below. */
   template <int dim>
@@ -122,6 +142,79 @@ namespace nsfd
           active_.set().surfaces.facets[pair.facet].side;
       next.surface_gap[place] = pair.gap;
     }
+  }
+
+  /** Of a facet with this key; none of Surfaces::no_key. */
+  template <int dim>
+  int SurfaceContacts<dim>::body_of_key(const std::uint64_t key) const
+  {
+    const int cell =
+        places_.cell_of(key / ActiveSurfaces<dim>::pieces_per_face);
+    return cell < 0 ? -1 : int(table_.body_of_cell[std::size_t(cell)]);
+  }
+
+  /** Those of the face that a facet belongs to: first and behind the last. */
+  template <int dim>
+  std::array<std::size_t, 2>
+  SurfaceContacts<dim>::places_of_face(const unsigned int facet) const
+  {
+    const unsigned int cell = active_.set().facet_cells[facet],
+                       face = active_.set().facet_faces[facet];
+    const std::size_t first = places_.of_node(cell, face, 0);
+    return {first, first + cells_.faces(cell)[face].nodes.size()};
+  }
+
+  /** The bounds of a @p place that was over a body in the last step. */
+  template <int dim>
+  void SurfaceContacts<dim>::take(const State &old, const std::size_t place,
+                                  const int over, Row &row) const
+  {
+    if (body_of_key(old.surface_facet[place]) != over)
+      return;
+    row.approach = std::max(row.approach, old.surface_approach[place]);
+    row.overlap = std::max(row.overlap, old.surface_overlap[place]);
+  }
+
+  template <int dim>
+  void SurfaceContacts<dim>::take_at_vertex(const State &old,
+                                            const unsigned int vertex,
+                                            const int over, Row &row) const
+  {
+    const auto &points = active_.set().points_by_vertex;
+    for (auto p = std::lower_bound(points.begin(), points.end(),
+                                   std::pair(vertex, 0u));
+         p != points.end() && p->first == vertex; ++p)
+      take(old, active_.set().point_places[p->second], over, row);
+  }
+
+  /**
+   * Where two faces slide past each other's ends, other points go on with the
+   * overlap that they have, and so does another point of the same corner when
+   * its body turns: they know the bounds of those that were over the same body.
+   */
+  template <int dim>
+  void SurfaceContacts<dim>::take_over(const FacetPair<dim> &pair,
+                                       const State &old, Row &row) const
+  {
+    const auto &point = active_.set().surfaces.points[pair.index];
+    for (const bool own : {true, false}) {
+      const auto places = places_of_face(own ? point.facet : pair.facet);
+      for (std::size_t k = places[0]; k < places[1]; ++k)
+        take(old, k, own ? row.body_1 : int(row.body_2), row);
+    }
+    take_at_vertex(old, point.vertex, row.body_1, row);
+  }
+
+  /** How deep a corner may be before it is seen: two bodies between which
+      faces still hold have slid past each other by what these allow. */
+  template <int dim>
+  double SurfaceContacts<dim>::unseen_depth(const FacetPair<dim> &pair) const
+  {
+    const auto &origin = active_.set().point_origins[pair.index];
+    return std::max(pair.inset, active_.unseen_slip(origin.cell, origin.face) +
+                                    active_.unseen_slip(
+                                        active_.set().facet_cells[pair.facet],
+                                        active_.set().facet_faces[pair.facet]));
   }
 
   template class SurfaceContacts<2>;

@@ -45,7 +45,7 @@ namespace nsfd
     /** What State::surface_contact says of a place, added up. */
     enum Mark : std::uint8_t {
       touches = 1,
-      released = 2 ///< something left its body in the last step
+      released = 2 ///< something has left its body, or its corner has split
     };
 
     /**
@@ -62,11 +62,10 @@ namespace nsfd
     {
       return cells_.merged(node);
     }
-    /** Cells hang together now by common nodes, see ActiveSurfaces. */
-    void set_wholes(typename ActiveSurfaces<dim>::Wholes wholes)
-    {
-      active_.set_wholes(std::move(wholes));
-    }
+    /** Cells hang together now by common nodes, see ActiveSurfaces. The parts
+        of a corner that has come apart are `released`: what touches one of them
+        has been inside of the other one. */
+    void set_wholes(typename ActiveSurfaces<dim>::Wholes wholes, State &state);
     /** What may touch in a step of @p time_step from @p old, on all ranks the
         same; nothing is faster than @p largest_speed. Collective. */
     std::vector<MovingRow<dim>> rows(const State &old, double time_step,
@@ -94,6 +93,7 @@ namespace nsfd
                           std::vector<Row> &rows);
     std::vector<Row> own_obstacle_rows(const State &old, double reach) const;
     Row ball_row(unsigned int body) const;
+    double unseen_depth(const FacetPair<dim> &pair) const;
     void set_partner(const FacetPair<dim> &pair, const State &old,
                      Row &row) const;
     static constexpr std::size_t unseen = Row::nowhere;

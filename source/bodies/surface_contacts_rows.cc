@@ -97,70 +97,6 @@ namespace nsfd
                                ActiveSurfaces<dim>::pieces_per_face];
   }
 
-  /** Of a facet with this key; none of Surfaces::no_key. */
-  template <int dim>
-  int SurfaceContacts<dim>::body_of_key(const std::uint64_t key) const
-  {
-    const int cell =
-        places_.cell_of(key / ActiveSurfaces<dim>::pieces_per_face);
-    return cell < 0 ? -1 : int(table_.body_of_cell[std::size_t(cell)]);
-  }
-
-  /** Those of the face that a facet belongs to: first and behind the last. */
-  template <int dim>
-  std::array<std::size_t, 2>
-  SurfaceContacts<dim>::places_of_face(const unsigned int facet) const
-  {
-    const unsigned int cell = active_.set().facet_cells[facet];
-    const std::size_t first = active_.set().surfaces.facets[facet].key /
-                              ActiveSurfaces<dim>::pieces_per_face;
-    unsigned int face = 0;
-    while (places_.of_node(cell, face, 0) != first)
-      ++face;
-    return {first, first + cells_.faces(cell)[face].nodes.size()};
-  }
-
-  /** The bounds of a @p place that was over a body in the last step. */
-  template <int dim>
-  void SurfaceContacts<dim>::take(const State &old, const std::size_t place,
-                                  const int over, Row &row) const
-  {
-    if (body_of_key(old.surface_facet[place]) != over)
-      return;
-    row.approach = std::max(row.approach, old.surface_approach[place]);
-    row.overlap = std::max(row.overlap, old.surface_overlap[place]);
-  }
-
-  template <int dim>
-  void SurfaceContacts<dim>::take_at_vertex(const State &old,
-                                            const unsigned int vertex,
-                                            const int over, Row &row) const
-  {
-    const auto &points = active_.set().points_by_vertex;
-    for (auto p = std::lower_bound(points.begin(), points.end(),
-                                   std::pair(vertex, 0u));
-         p != points.end() && p->first == vertex; ++p)
-      take(old, active_.set().point_places[p->second], over, row);
-  }
-
-  /**
-   * Where two faces slide past each other's ends, other points go on with the
-   * overlap that they have, and so does another point of the same corner when
-   * its body turns: they know the bounds of those that were over the same body.
-   */
-  template <int dim>
-  void SurfaceContacts<dim>::take_over(const FacetPair<dim> &pair,
-                                       const State &old, Row &row) const
-  {
-    const auto &point = active_.set().surfaces.points[pair.index];
-    for (const bool own : {true, false}) {
-      const auto places = places_of_face(own ? point.facet : pair.facet);
-      for (std::size_t k = places[0]; k < places[1]; ++k)
-        take(old, k, own ? row.body_1 : int(row.body_2), row);
-    }
-    take_at_vertex(old, point.vertex, row.body_1, row);
-  }
-
   /** Facet and gap, and its rate with the velocities at the start. */
   template <int dim>
   void SurfaceContacts<dim>::set_partner(const FacetPair<dim> &pair,
@@ -189,7 +125,7 @@ namespace nsfd
         // it may have come in from any side in the last step, or has not been
         // seen while only a corner of it overlapped
         row.approach = old.last_step * away.norm();
-        row.overlap = std::min(-row.gap, pair.inset);
+        row.overlap = std::min(-row.gap, unseen_depth(pair));
         take_over(pair, old, row);
       }
     }

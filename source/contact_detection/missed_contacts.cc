@@ -30,6 +30,8 @@ namespace nsfd
     entries.reserve(surfaces.facets.size());
     for (unsigned int f = 0; f < surfaces.facets.size(); ++f) {
       const auto &facet = surfaces.facets[f];
+      if (!facet.touches)
+        continue;
       entries.emplace_back(swept.swept(facet.vertex.begin(),
                                        facet.vertex.begin() + facet.n_vertices,
                                        0.),

@@ -40,7 +40,8 @@ namespace nsfd
       std::vector<typename BoxTree<dim>::Entry> entries;
       entries.reserve(surfaces.facets.size());
       for (unsigned int f = 0; f < surfaces.facets.size(); ++f)
-        entries.emplace_back(box_of<dim>(surfaces.facets[f], x), f);
+        if (surfaces.facets[f].touches)
+          entries.emplace_back(box_of<dim>(surfaces.facets[f], x), f);
       return BoxTree<dim>(entries);
     }
 

@@ -206,7 +206,7 @@ namespace nsfd
           const auto &ends = surfaces_.facets[sides[i]].vertex;
           const Place<dim> other =
               place<dim>(x_, ends[ends[0] == point.vertex ? 1 : 0]);
-          if (!crosses(f, other, y))
+          if (!crosses(f, other, y) && !lies_on(f, other))
             continue;
           const Plane<dim> &beside = planes_[sides[1 - i]];
           for (unsigned int v = 0; v < 2; ++v) {
@@ -224,6 +224,15 @@ namespace nsfd
           }
         }
         return false;
+      }
+
+      /** Below facet @p f, as deep as a touch may be, and between its ends. */
+      bool lies_on(const unsigned int f, const Place<dim> &y) const
+      {
+        const Plane<dim> &plane = planes_[f];
+        const double height = dot(plane.normal, difference(y, plane.centre));
+        return height <= 0. && height >= -deepest * plane.size &&
+               projects_into<dim>(surfaces_.facets[f], plane, x_, y);
       }
 
       /** The way from in front of facet @p f to @p foot goes through it. */

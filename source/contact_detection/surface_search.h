@@ -27,6 +27,7 @@ namespace nsfd
       unsigned int n_vertices = dim;
       unsigned int body = 0;
       unsigned int whole = 0; ///< bodies that hang together have the same
+      bool touches = true;    ///< false: it only says where the next ones end
       std::uint64_t key = 0;  ///< unique; decides where geometry does not
       /// key of one of those that are one flat side, see set_flat_sides()
       std::uint64_t side = 0;

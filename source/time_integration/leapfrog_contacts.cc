@@ -93,7 +93,8 @@ namespace nsfd
   LeapfrogContacts<dim>::~LeapfrogContacts() = default;
 
   template <int dim>
-  void LeapfrogContacts<dim>::start(const State &state)
+  void LeapfrogContacts<dim>::start(const State &state,
+                                    const CornerGroups<dim> &groups)
   {
     state_ = state;
     for (std::size_t i = 0; i < state_.kind.size(); ++i)
@@ -102,6 +103,7 @@ namespace nsfd
     state_.touches.clear();
     if (state_.obstacle_shift.empty())
       state_.obstacle_shift = initial_shifts(input_);
+    set_wholes(groups);
   }
 
   template <int dim>
@@ -206,7 +208,7 @@ namespace nsfd
     wholes.of_cell.resize(n_cells);
     for (unsigned int c = 0; c < n_cells; ++c)
       wholes.of_cell[c] = sets.first(c);
-    surfaces_.set_wholes(std::move(wholes));
+    surfaces_.set_wholes(std::move(wholes), state_);
   }
 
   // ------------------------------------------------------ contacts of a step

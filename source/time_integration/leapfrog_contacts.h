@@ -46,8 +46,8 @@ namespace nsfd
 
     /** Nothing kept yet. */
     void set_initial(State &state) const { surfaces_.set_initial(state); }
-    /** What the surfaces keep is that of @p state. */
-    void start(const State &state);
+    /** What the surfaces keep is that of @p state, with its groups. */
+    void start(const State &state, const CornerGroups<dim> &groups);
 
     /** Points of the mesh that are left to the search now, by what active ones
         are; @p way as for left(). */

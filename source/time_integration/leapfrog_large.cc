@@ -54,10 +54,11 @@ namespace nsfd
   }
 
   template <int dim>
-  void LeapfrogLarge<dim>::start(const State &state)
+  void LeapfrogLarge<dim>::start(const State &state,
+                                 const CornerGroups<dim> &groups)
   {
     if (contacts_)
-      contacts_->start(state);
+      contacts_->start(state, groups);
     stored_ = stored();
   }
 

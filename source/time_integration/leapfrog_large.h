@@ -41,7 +41,7 @@ namespace nsfd
       forces_.histories().set(state.material_history, state.last_step);
     }
     /** From @p state, with the forces there. */
-    void start(const State &state);
+    void start(const State &state, const CornerGroups<dim> &groups);
 
     /** Of the bound of the step at rest: what is stable now. */
     double stable_share() const;

@@ -78,7 +78,7 @@ namespace nsfd
       viscous->set(*groups_, hanging_);
     before_.front = forces_->front().finish(communicator_);
     if (large_)
-      large_->start(state);
+      large_->start(state, *groups_);
     loads_.start(state.time, *groups_);
   }
 

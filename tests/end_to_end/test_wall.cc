@@ -60,6 +60,7 @@ namespace end_to_end::test_wall
                         Seed{30210, "large explicit breakable contact"},
                         // faces that hold at one end and slide at the other
                         Seed{30070, "large explicit mixed contact"},
+                        Seed{30258, "large explicit mixed contact"},
                         // acute corners that cut through each other
                         Seed{30088, "large explicit breakable contact"},
                         Seed{30290, "large explicit breakable contact"},

@@ -149,6 +149,49 @@ namespace surface_scene::test_surface_search
     }
   }
 
+  // Two sides lie on each other, by 0.0006 at one end and 0.02 at the other,
+  // where their tips have passed each other: neither is in the other body, and
+  // no end of a side is in front of the other side.
+  TEST(SurfaceSearch, FlushSidesWhoseTipsHavePassed)
+  {
+    Scene<2> scene;
+    add_polygon(scene, 0, {{0., 0.}, {3.8, 0.}, {1., 3.}}); // 100 to 102
+    add_polygon(scene, 1, {{3., -0.5}, {3.9, 1e-4}, {-0.05, 0.02}}); // to 105
+    scene.all_points();
+    std::set<unsigned int> inside;
+    for (const auto &pair : scene.find(0.01).points)
+      if (pair.gap < 0.) {
+        inside.insert(scene.surfaces.points[pair.index].vertex);
+        EXPECT_EQ(scene.surfaces.facets[pair.facet].key, 104u);
+      }
+    EXPECT_EQ(inside, (std::set<unsigned int>{0, 1}));
+  }
+
+  // A corner below a side, but outside of its cell: beyond a face that still
+  // holds, which touches nothing itself.
+  TEST(SurfaceSearch, FaceThatHoldsEndsASurface)
+  {
+    for (const bool known : {false, true}) {
+      Scene<2> scene;
+      add_polygon(scene, 0, {{0., 0.}, {-4., 0.}, {-3., -3.}}); // 100 to 102
+      add_polygon(scene, 1, {{-0.05, -0.5}, {2.35, -2.3}, {3., -0.5}});
+      if (known)
+        scene.surfaces.facets[2].touches = false;
+      else
+        scene.surfaces.facets.erase(scene.surfaces.facets.begin() + 2);
+      scene.all_points();
+      auto &points = scene.surfaces.points;
+      points.erase(
+          std::remove_if(points.begin(), points.end(),
+                         [&](const auto &point) {
+                           return !scene.surfaces.facets[point.facet].touches;
+                         }),
+          points.end());
+      const auto pairs = scene.find(0.01);
+      EXPECT_EQ(pairs.points.size(), known ? 0u : 1u);
+    }
+  }
+
   // The tip of body 0 is a little inside the left side of body 1, whose lower
   // corner is in front of the tip's lower side: it does not touch the upper
   // one, although the side that leads to it cuts the tip.
