@@ -1,8 +1,8 @@
 #include "active_surfaces.h"
 
 #include "contact_detection/flat_sides.h"
-#include "core/disjoint_sets.h"
 #include "contact_detection/touching_rules.h"
+#include "core/disjoint_sets.h"
 #include "core/gather.h"
 
 #include "nsfd/scene/scene_input.h"
@@ -24,7 +24,10 @@ namespace nsfd
                                       const ContactBlocks &blocks)
       : input_(input), discretization_(discretization),
         table_(discretization.body_table()), bodies_(bodies),
-        all_(communicator), cells_(cells), places_(places), blocks_(blocks)
+        all_(communicator), cells_(cells), places_(places), blocks_(blocks),
+        obstacle_for_all_(std::any_of(
+            input.obstacles.begin(), input.obstacles.end(),
+            [](const auto &o) { return o.where.kind == Where::Kind::all; }))
   {
   }
 
@@ -97,46 +100,51 @@ namespace nsfd
     const auto &points = discretization_.points();
     separated_.resize(cells_.mesh_faces().size(), 0);
     opening_.resize(separated_.size(), Opening::none);
-    std::vector<int> changed;
+    std::vector<Change> changed;
     for (std::size_t f = 0; f < points.faces.size(); ++f) {
       const int face = cells_.mesh_face(f);
       if (face < 0 || points.faces[f].first >= points.n_owned)
         continue;
-      char now = 0;
+      Change now{unsigned(face), 0, opening_of(state, f)};
       for (unsigned int i = 0; i < points.faces[f].count; ++i)
-        now |= state.kind[points.faces[f].first + i] == PointKind::separated;
-      if (!wholes_.node.empty())
-        share_openings(state, f);
-      if (now != separated_[std::size_t(face)])
-        changed.push_back(face);
+        now.separated |=
+            state.kind[points.faces[f].first + i] == PointKind::separated;
+      if (now.separated != separated_[now.face] ||
+          now.opening != opening_[now.face])
+        changed.push_back(now);
     }
     if (!all_.any(!changed.empty()))
       return false;
-    for (const int face : gather_all(all_, changed))
-      separated_[std::size_t(face)] ^= 1;
+    for (const Change &now : gather_all(all_, changed)) {
+      separated_[now.face] = now.separated;
+      opening_[now.face] = now.opening;
+    }
     return true;
   }
 
-  /** Of face @p f of the points, whose cells hang together by nodes. */
+  /**
+   * Of face @p f of the points. Where every cell moves by itself, law points
+   * keep its sides apart until it is separated, and only an obstacle may touch
+   * the corners that it frees.
+   */
   template <int dim>
-  void ActiveSurfaces<dim>::share_openings(const State &state,
-                                           const std::size_t f)
+  typename ActiveSurfaces<dim>::Opening
+  ActiveSurfaces<dim>::opening_of(const State &state, const std::size_t f) const
   {
+    const bool hangs_together = !wholes_.node.empty();
     const auto &points = discretization_.points().faces[f];
     Opening opening = Opening::none;
+    if (!hangs_together && !obstacle_for_all_)
+      return opening;
     for (unsigned int i = points.first; i < points.first + points.count; ++i) {
       const PointKind kind = state.kind[i];
-      if (kind == PointKind::free)
+      if (hangs_together && kind == PointKind::free)
         opening = Opening::half;
-      else if (opening == Opening::none && kind != PointKind::bonded &&
+      else if (opening == Opening::none && !is_joined(kind) &&
                kind != PointKind::separated)
         opening = Opening::begun;
     }
-    Opening &known = opening_[std::size_t(cells_.mesh_face(f))];
-    if (opening == known)
-      return;
-    known = opening;
-    known_ = false;
+    return opening;
   }
 
   template <int dim>
@@ -162,7 +170,7 @@ namespace nsfd
       for (unsigned int f = 0; f < cells_.faces(c).size(); ++f)
         if (is_surface(c, f))
           add_face(c, f, true);
-        else if (dim == 2 && has_opened(c, f))
+        else if (dim == 2 && !wholes_.node.empty() && has_opened(c, f))
           add_face(c, f, false);
     }
     for (unsigned int b = 0; b < table_.bodies.size(); ++b)

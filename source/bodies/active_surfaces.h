@@ -95,10 +95,21 @@ namespace nsfd
     Vector velocity(std::size_t node) const;
 
   private:
+    /// how far a face that still holds somewhere has opened
+    enum class Opening : char {
+      none,
+      begun, ///< corners that it frees may touch an obstacle
+      half   ///< free at one of its points: nothing covers its sides there
+    };
+    struct Change {
+      unsigned int face;
+      char separated;
+      Opening opening;
+    };
+    Opening opening_of(const State &state, std::size_t face) const;
     bool is_surface(unsigned int cell, unsigned int face) const;
     bool has_opened(unsigned int cell, unsigned int face) const;
     bool share_separated(const State &state);
-    void share_openings(const State &state, std::size_t face);
     void set_surfaces();
     void set_sides();
     void set_moving_nodes();
@@ -117,20 +128,15 @@ namespace nsfd
     const SurfaceCells<dim> &cells_;
     const ContactPlaces<dim> &places_;
     const ContactBlocks &blocks_;
+    const bool obstacle_for_all_; ///< one of them
 
     struct Side {
       unsigned int cell, face;
       Vector normal;
     };
     std::unordered_map<unsigned int, std::vector<Side>> sides_at_;
-    /// how far a face that still holds somewhere has opened
-    enum class Opening : char {
-      none,
-      begun, ///< corners that it frees may touch an obstacle
-      half   ///< free at one of its points: nothing covers its sides there
-    };
     std::vector<char> separated_;  ///< per mesh face
-    std::vector<Opening> opening_; ///< where cells hang together
+    std::vector<Opening> opening_; ///< per mesh face, of all ranks
     Wholes wholes_;                ///< empty: every body is one
     /// by cell: what hangs together by faces that hold; of what has no wholes
     std::vector<unsigned int> piece_of_cell_;
