@@ -76,9 +76,9 @@ namespace nsfd
     add_obstacle_faces();
     if (input_.contacts.empty())
       return true;
+    set_pieces();
     set_surfaces();
     set_moving_nodes();
-    set_pieces();
     share_rest();
     share_motion(state);
     const auto keeps_shape = [this](const unsigned int b) {
@@ -179,7 +179,7 @@ namespace nsfd
                                        std::uint64_t(b),
                                        unsigned(cells_.centre_node(b))});
     set_.surfaces.n_vertices = cells_.n_nodes() + table_.n_rigid;
-    set_.surfaces.all_wholes = !wholes_.of_cell.empty();
+    set_.surfaces.all_wholes = true;
     set_.surfaces.is_behind = [this](const unsigned int vertex,
                                      const unsigned int facet) {
       return is_behind(vertex, facet);
@@ -220,6 +220,7 @@ namespace nsfd
                      });
     x_.assign(set_.surfaces.n_vertices * dim, 0.);
     v_.assign(cells_.n_nodes() * dim, 0.);
+    way_ = v_;
   }
 
   /** Cells of bodies between which a face holds are one piece. */
@@ -265,20 +266,25 @@ namespace nsfd
   void ActiveSurfaces<dim>::share_motion(const State &old)
   {
     std::vector<double> own;
-    own.reserve(own_moving_nodes_.size() * 2 * dim);
+    own.reserve(own_moving_nodes_.size() * 3 * dim);
     for (const std::size_t node : own_moving_nodes_) {
       const std::size_t k = bodies_.own_node(node);
       const Point<dim> x = bodies_.place(old, k);
       own.insert(own.end(), x.begin_raw(), x.end_raw());
       own.insert(own.end(), old.velocity.begin() + long(k * dim),
                  old.velocity.begin() + long((k + 1) * dim));
+      // explicit velocities are those of the middles of steps
+      for (std::size_t i = k * dim; i < (k + 1) * dim; ++i)
+        own.push_back(old.last_way.empty() ? old.last_step * old.velocity[i]
+                                           : old.last_way[i]);
     }
     const auto motion = gather_all(all_, own);
     const double *from = motion.data();
     for (const std::size_t node : moving_nodes_) {
       std::copy_n(from, dim, x_.data() + node * dim);
       std::copy_n(from + dim, dim, v_.data() + node * dim);
-      from += 2 * dim;
+      std::copy_n(from + 2 * dim, dim, way_.data() + node * dim);
+      from += 3 * dim;
     }
     for (std::size_t r = 0; r < table_.n_rigid; ++r)
       std::copy_n(old.rigid.data() + 13 * r, dim,
@@ -355,7 +361,7 @@ namespace nsfd
       for (unsigned int v = 0; v < facet.n_vertices; ++v)
         facet.vertex[v] = merged(first + face.pieces[p][v]);
       facet.body = table_.body_of_cell[c];
-      facet.whole = wholes_.of_cell.empty() ? facet.body : wholes_.of_cell[c];
+      facet.whole = piece_of_cell_[c];
       facet.key = std::uint64_t(places_.of_node(c, f, 0)) * pieces_per_face + p;
       facet.touches = touches;
       for (unsigned int v = 0; touches && v < facet.n_vertices; ++v) {
@@ -423,10 +429,23 @@ namespace nsfd
   template <int dim>
   Tensor<1, dim> ActiveSurfaces<dim>::velocity(const std::size_t node) const
   {
-    Vector v;
+    return at(v_, node);
+  }
+
+  template <int dim>
+  Tensor<1, dim> ActiveSurfaces<dim>::last_way(const std::size_t node) const
+  {
+    return at(way_, node);
+  }
+
+  template <int dim>
+  Tensor<1, dim> ActiveSurfaces<dim>::at(const std::vector<double> &values,
+                                         const std::size_t node)
+  {
+    Vector result;
     for (unsigned int d = 0; d < dim; ++d)
-      v[d] = v_[node * dim + d];
-    return v;
+      result[d] = values[node * dim + d];
+    return result;
   }
 
   template class ActiveSurfaces<2>;

@@ -93,6 +93,9 @@ namespace nsfd
     /** Theirs in another state, say at the end of the step. Collective. */
     std::vector<double> places_in(const State &state) const;
     Vector velocity(std::size_t node) const;
+    /** How far it went in the last step, m: an impact within the step changes
+        the velocity, which is that of its end only. */
+    Vector last_way(std::size_t node) const;
 
   private:
     /// how far a face that still holds somewhere has opened
@@ -107,6 +110,7 @@ namespace nsfd
       Opening opening;
     };
     Opening opening_of(const State &state, std::size_t face) const;
+    static Vector at(const std::vector<double> &values, std::size_t node);
     bool is_surface(unsigned int cell, unsigned int face) const;
     bool has_opened(unsigned int cell, unsigned int face) const;
     bool share_separated(const State &state);
@@ -142,8 +146,8 @@ namespace nsfd
     std::vector<unsigned int> piece_of_cell_;
     bool known_ = false;
     std::vector<std::size_t> moving_nodes_, own_moving_nodes_; ///< of surfaces
-    std::vector<double> x_, v_; ///< of them by node, and centres
-    std::vector<double> rest_;  ///< by node, of moving_nodes_
+    std::vector<double> x_, v_, way_; ///< of them by node, and centres
+    std::vector<double> rest_;        ///< by node, of moving_nodes_
     std::unordered_set<UnorderedPair> joined_;
     Set set_;
     std::vector<ObstacleFace> obstacle_faces_;

@@ -124,7 +124,10 @@ namespace nsfd
       } else {
         // it may have come in from any side in the last step, or has not been
         // seen while only a corner of it overlapped
-        row.approach = old.last_step * away.norm();
+        Vector way = active_.last_way(row.node);
+        for (unsigned int v = 0; v < row.n_facet; ++v)
+          way -= row.weights[v] * active_.last_way(row.facet[v]);
+        row.approach = way.norm();
         row.overlap = std::min(-row.gap, unseen_depth(pair));
         take_over(pair, old, row);
       }
@@ -168,12 +171,14 @@ namespace nsfd
     row.edge_weights = {1. - pair.place, pair.place};
     row.weights = {1. - pair.other_place, pair.other_place};
     std::array<Vector, 2> way;
-    Vector normal, away;
+    Vector normal, away, last_way;
     for (unsigned int v = 0; v < 2; ++v) {
       row.edge[v] = edge.vertex[v];
       row.facet[v] = other.vertex[v];
       away += row.edge_weights[v] * active_.velocity(row.edge[v]) -
               row.weights[v] * active_.velocity(row.facet[v]);
+      last_way += row.edge_weights[v] * active_.last_way(row.edge[v]) -
+                  row.weights[v] * active_.last_way(row.facet[v]);
       const double sign = v == 0 ? -1. : 1.;
       for (unsigned int d = 0; d < dim; ++d) {
         way[0][d] += sign * active_.positions()[row.edge[v] * dim + d];
@@ -192,7 +197,7 @@ namespace nsfd
     if (row.gap < 0.) {
       // bodies that turn touch with corners first, then with edges, and what is
       // nearly flat has no edge yet
-      row.approach = old.last_step * away.norm();
+      row.approach = last_way.norm();
       row.overlap =
           std::min(-row.gap, crease * std::sqrt(way[0].norm() * way[1].norm()));
       for (unsigned int v = 0; v < 2; ++v) {

@@ -64,6 +64,9 @@ namespace nsfd
     // quaternion (body to space), spin in the frame of the body (13 numbers)
     std::vector<double> rigid;
     std::vector<double> obstacle_shift; ///< of moving ones, 3 per obstacle, m
+    /// of implicit motions with contacts of bodies: how far nodes went in the
+    /// last step, by unknown, m
+    std::vector<double> last_way;
     /// per place of a surface, see bodies/surface_contacts.h: dim components,
     /// and its history
     std::vector<double> surface_impulse, surface_slip, surface_worn,

@@ -398,6 +398,11 @@ namespace nsfd
       next.jump[k] = problem_.jump_free[k] +
                      time_step_ * problem_.theta * next.relative_velocity[k];
     bodies_.finish(next);
+    if (!parts_.input.contacts.empty()) {
+      next.last_way.resize(next.displacement.size());
+      for (std::size_t k = 0; k < next.last_way.size(); ++k)
+        next.last_way[k] = next.displacement[k] - start_->displacement[k];
+    }
     refuse_missed_contacts(next);
   }
 

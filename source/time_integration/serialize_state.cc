@@ -48,6 +48,7 @@ namespace nsfd
           serialize_points(field.name, s.*member, archive);
         });
     archive.common("rigid", s.rigid);
+    archive.bodies("last_way", s.last_way);
     archive.common("obstacle_shift", s.obstacle_shift);
     archive.histories("material_history", s.material_history);
     archive.common("surface_impulse", s.surface_impulse);
