@@ -82,8 +82,8 @@ namespace nsfd
     const auto has_sides = [this](const unsigned int b) {
       return input_.time.scheme.at_nodes && table_.is_rigid(b);
     };
-    set_flat_sides<dim>(set_.surfaces, x_.data(), has_sides);
-    set_edges<dim>(set_.surfaces, x_.data(), keeps_shape);
+    set_flat_sides<dim>(set_.surfaces, at_.x.data(), has_sides);
+    set_edges<dim>(set_.surfaces, at_.x.data(), keeps_shape);
     return true;
   }
 
@@ -179,8 +179,8 @@ namespace nsfd
                      [&](const std::size_t a, const std::size_t b) {
                        return rank_of(a) < rank_of(b);
                      });
-    x_.assign(set_.surfaces.n_vertices * dim, 0.);
-    v_.assign(cells_.n_nodes() * dim, 0.);
+    at_.x.assign(set_.surfaces.n_vertices * dim, 0.);
+    at_.v.assign(cells_.n_nodes() * dim, 0.);
   }
 
   /** Cells of bodies between which a face holds are one piece. */
@@ -213,10 +213,10 @@ namespace nsfd
       own.insert(own.end(), x, x + dim);
     }
     const auto places = gather_all(all_, own);
-    rest_.assign(cells_.n_nodes() * dim, 0.);
+    at_.rest.assign(cells_.n_nodes() * dim, 0.);
     const double *from = places.data();
     for (const std::size_t node : moving_nodes_) {
-      std::copy_n(from, dim, rest_.data() + node * dim);
+      std::copy_n(from, dim, at_.rest.data() + node * dim);
       from += dim;
     }
   }
@@ -237,13 +237,13 @@ namespace nsfd
     const auto motion = gather_all(all_, own);
     const double *from = motion.data();
     for (const std::size_t node : moving_nodes_) {
-      std::copy_n(from, dim, x_.data() + node * dim);
-      std::copy_n(from + dim, dim, v_.data() + node * dim);
+      std::copy_n(from, dim, at_.x.data() + node * dim);
+      std::copy_n(from + dim, dim, at_.v.data() + node * dim);
       from += 2 * dim;
     }
     for (std::size_t r = 0; r < table_.n_rigid; ++r)
       std::copy_n(old.rigid.data() + 13 * r, dim,
-                  x_.data() + (cells_.n_nodes() + r) * dim);
+                  at_.x.data() + (cells_.n_nodes() + r) * dim);
   }
 
   template <int dim>
@@ -256,7 +256,7 @@ namespace nsfd
       own.insert(own.end(), x.begin_raw(), x.end_raw());
     }
     const auto places = gather_all(all_, own);
-    std::vector<double> result(x_.size(), 0.);
+    std::vector<double> result(at_.x.size(), 0.);
     const double *from = places.data();
     for (const std::size_t node : moving_nodes_) {
       std::copy_n(from, dim, result.data() + node * dim);
@@ -344,10 +344,10 @@ namespace nsfd
     auto local = facet;
     for (unsigned int v = 0; v < facet.n_vertices; ++v) {
       local.vertex[v] = v;
-      std::copy_n(&rest_[facet.vertex[v] * dim], dim, &x[v * dim]);
+      std::copy_n(&at_.rest[facet.vertex[v] * dim], dim, &x[v * dim]);
     }
     std::array<double, dim> y;
-    std::copy_n(&rest_[vertex * dim], dim, y.data());
+    std::copy_n(&at_.rest[vertex * dim], dim, y.data());
     return is_below<dim>(local, x.data(), y);
   }
 
@@ -370,7 +370,7 @@ namespace nsfd
   {
     Vector v;
     for (unsigned int d = 0; d < dim; ++d)
-      v[d] = v_[node * dim + d];
+      v[d] = at_.v[node * dim + d];
     return v;
   }
 

@@ -84,7 +84,7 @@ namespace nsfd
     bool is_corner(unsigned int cell, unsigned int face,
                    unsigned int node) const;
     /** Of vertices, dim each. */
-    const double *positions() const { return x_.data(); }
+    const double *positions() const { return at_.x.data(); }
     /** Theirs in another state, say at the end of the step. Collective. */
     std::vector<double> places_in(const State &state) const;
     Vector velocity(std::size_t node) const;
@@ -124,8 +124,10 @@ namespace nsfd
     std::vector<unsigned int> piece_of_cell_;
     bool known_ = false;
     std::vector<std::size_t> moving_nodes_, own_moving_nodes_; ///< of surfaces
-    std::vector<double> x_, v_; ///< of them by node, and centres
-    std::vector<double> rest_;  ///< by node, of moving_nodes_
+    /// of moving_nodes_ by node, and of centres
+    struct Places {
+      std::vector<double> x, v, rest;
+    } at_;
     std::unordered_set<UnorderedPair> joined_;
     Set set_;
     std::vector<ObstacleFace> obstacle_faces_;
