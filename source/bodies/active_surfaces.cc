@@ -23,11 +23,12 @@ namespace nsfd
                                       const ContactPlaces<dim> &places,
                                       const ContactBlocks &blocks)
       : input_(input), discretization_(discretization),
-        table_(discretization.body_table()), bodies_(bodies),
-        all_(communicator), cells_(cells), places_(places), blocks_(blocks),
+        table_(discretization.body_table()), all_(communicator), cells_(cells),
+        places_(places), blocks_(blocks),
         obstacle_for_all_(std::any_of(
             input.obstacles.begin(), input.obstacles.end(),
-            [](const auto &o) { return o.where.kind == Where::Kind::all; }))
+            [](const auto &o) { return o.where.kind == Where::Kind::all; })),
+        motion_(table_, bodies, communicator, cells)
   {
   }
 
@@ -62,7 +63,7 @@ namespace nsfd
   {
     if (!share_separated(state) && known_) {
       if (!input_.contacts.empty())
-        share_motion(state);
+        motion_.share(state);
       return false;
     }
     known_ = true;
@@ -79,8 +80,7 @@ namespace nsfd
     set_pieces();
     set_surfaces();
     set_moving_nodes();
-    share_rest();
-    share_motion(state);
+    motion_.share(state);
     const auto keeps_shape = [this](const unsigned int b) {
       return table_.is_rigid(b);
     };
@@ -88,8 +88,8 @@ namespace nsfd
     const auto has_sides = [this](const unsigned int b) {
       return input_.time.scheme.at_nodes && table_.is_rigid(b);
     };
-    set_flat_sides<dim>(set_.surfaces, x_.data(), has_sides);
-    set_edges<dim>(set_.surfaces, x_.data(), keeps_shape);
+    set_flat_sides<dim>(set_.surfaces, motion_.positions(), has_sides);
+    set_edges<dim>(set_.surfaces, motion_.positions(), keeps_shape);
     return true;
   }
 
@@ -194,33 +194,15 @@ namespace nsfd
   template <int dim>
   void ActiveSurfaces<dim>::set_moving_nodes()
   {
-    moving_nodes_.clear();
+    std::vector<std::size_t> nodes;
     for (const auto &facet : set_.surfaces.facets)
-      moving_nodes_.insert(moving_nodes_.end(), facet.vertex.begin(),
-                           facet.vertex.begin() + facet.n_vertices);
+      nodes.insert(nodes.end(), facet.vertex.begin(),
+                   facet.vertex.begin() + facet.n_vertices);
     for (const Origin &origin : set_.point_origins)
-      moving_nodes_.push_back(
+      nodes.push_back(
           cells_.first_node(origin.cell) +
           cells_.faces(origin.cell)[origin.face].nodes[origin.node]);
-    std::sort(moving_nodes_.begin(), moving_nodes_.end());
-    moving_nodes_.erase(std::unique(moving_nodes_.begin(), moving_nodes_.end()),
-                        moving_nodes_.end());
-    own_moving_nodes_.clear();
-    const auto rank_of = [this](const std::size_t node) {
-      return table_.bodies[table_.body_of_cell[node / cells_.nodes_per_cell()]]
-          .rank;
-    };
-    for (const std::size_t node : moving_nodes_)
-      if (rank_of(node) == all_.rank())
-        own_moving_nodes_.push_back(node);
-    // as the ranks send them
-    std::stable_sort(moving_nodes_.begin(), moving_nodes_.end(),
-                     [&](const std::size_t a, const std::size_t b) {
-                       return rank_of(a) < rank_of(b);
-                     });
-    x_.assign(set_.surfaces.n_vertices * dim, 0.);
-    v_.assign(cells_.n_nodes() * dim, 0.);
-    way_ = v_;
+    motion_.set_nodes(std::move(nodes));
   }
 
   /** Cells of bodies between which a face holds are one piece. */
@@ -240,77 +222,6 @@ namespace nsfd
     piece_of_cell_.resize(cells_.size());
     for (unsigned int c = 0; c < cells_.size(); ++c)
       piece_of_cell_[c] = bodies.first(table_.body_of_cell[c]);
-  }
-
-  template <int dim>
-  void ActiveSurfaces<dim>::share_rest()
-  {
-    std::vector<double> own;
-    own.reserve(own_moving_nodes_.size() * dim);
-    for (const std::size_t node : own_moving_nodes_) {
-      const auto x =
-          bodies_.rest().begin() + long(bodies_.own_node(node) * dim);
-      own.insert(own.end(), x, x + dim);
-    }
-    const auto places = gather_all(all_, own);
-    rest_.assign(cells_.n_nodes() * dim, 0.);
-    const double *from = places.data();
-    for (const std::size_t node : moving_nodes_) {
-      std::copy_n(from, dim, rest_.data() + node * dim);
-      from += dim;
-    }
-  }
-
-  /** Where the surfaces of all ranks are, and how fast. */
-  template <int dim>
-  void ActiveSurfaces<dim>::share_motion(const State &old)
-  {
-    std::vector<double> own;
-    own.reserve(own_moving_nodes_.size() * 3 * dim);
-    for (const std::size_t node : own_moving_nodes_) {
-      const std::size_t k = bodies_.own_node(node);
-      const Point<dim> x = bodies_.place(old, k);
-      own.insert(own.end(), x.begin_raw(), x.end_raw());
-      own.insert(own.end(), old.velocity.begin() + long(k * dim),
-                 old.velocity.begin() + long((k + 1) * dim));
-      // explicit velocities are those of the middles of steps
-      for (std::size_t i = k * dim; i < (k + 1) * dim; ++i)
-        own.push_back(old.last_way.empty() ? old.last_step * old.velocity[i]
-                                           : old.last_way[i]);
-    }
-    const auto motion = gather_all(all_, own);
-    const double *from = motion.data();
-    for (const std::size_t node : moving_nodes_) {
-      std::copy_n(from, dim, x_.data() + node * dim);
-      std::copy_n(from + dim, dim, v_.data() + node * dim);
-      std::copy_n(from + 2 * dim, dim, way_.data() + node * dim);
-      from += 3 * dim;
-    }
-    for (std::size_t r = 0; r < table_.n_rigid; ++r)
-      std::copy_n(old.rigid.data() + 13 * r, dim,
-                  x_.data() + (cells_.n_nodes() + r) * dim);
-  }
-
-  template <int dim>
-  std::vector<double> ActiveSurfaces<dim>::places_in(const State &state) const
-  {
-    std::vector<double> own;
-    own.reserve(own_moving_nodes_.size() * dim);
-    for (const std::size_t node : own_moving_nodes_) {
-      const Point<dim> x = bodies_.place(state, bodies_.own_node(node));
-      own.insert(own.end(), x.begin_raw(), x.end_raw());
-    }
-    const auto places = gather_all(all_, own);
-    std::vector<double> result(x_.size(), 0.);
-    const double *from = places.data();
-    for (const std::size_t node : moving_nodes_) {
-      std::copy_n(from, dim, result.data() + node * dim);
-      from += dim;
-    }
-    for (std::size_t r = 0; r < table_.n_rigid; ++r)
-      std::copy_n(state.rigid.data() + 13 * r, dim,
-                  result.data() + (cells_.n_nodes() + r) * dim);
-    return result;
   }
 
   template <int dim>
@@ -405,10 +316,10 @@ namespace nsfd
     auto local = facet;
     for (unsigned int v = 0; v < facet.n_vertices; ++v) {
       local.vertex[v] = v;
-      std::copy_n(&rest_[facet.vertex[v] * dim], dim, &x[v * dim]);
+      std::copy_n(motion_.rest(facet.vertex[v]), dim, &x[v * dim]);
     }
     std::array<double, dim> y;
-    std::copy_n(&rest_[vertex * dim], dim, y.data());
+    std::copy_n(motion_.rest(vertex), dim, y.data());
     return is_below<dim>(local, x.data(), y);
   }
 
@@ -424,28 +335,6 @@ namespace nsfd
             if (cells_.kind_of(c, f) >= 0 &&
                 (is_surface(c, f) || has_opened(c, f)))
               obstacle_faces_.push_back({c, f, o});
-  }
-
-  template <int dim>
-  Tensor<1, dim> ActiveSurfaces<dim>::velocity(const std::size_t node) const
-  {
-    return at(v_, node);
-  }
-
-  template <int dim>
-  Tensor<1, dim> ActiveSurfaces<dim>::last_way(const std::size_t node) const
-  {
-    return at(way_, node);
-  }
-
-  template <int dim>
-  Tensor<1, dim> ActiveSurfaces<dim>::at(const std::vector<double> &values,
-                                         const std::size_t node)
-  {
-    Vector result;
-    for (unsigned int d = 0; d < dim; ++d)
-      result[d] = values[node * dim + d];
-    return result;
   }
 
   template class ActiveSurfaces<2>;

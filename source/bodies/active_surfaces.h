@@ -2,6 +2,7 @@
 
 #include "body_layout.h"
 #include "contact_places.h"
+#include "surface_motion.h"
 
 #include "contact_detection/surface_search.h"
 
@@ -88,14 +89,8 @@ namespace nsfd
         points has broken or slid by this, has slid before, m; 0: it does not
         hold. */
     double unseen_slip(unsigned int cell, unsigned int face) const;
-    /** Of vertices, dim each. */
-    const double *positions() const { return x_.data(); }
-    /** Theirs in another state, say at the end of the step. Collective. */
-    std::vector<double> places_in(const State &state) const;
-    Vector velocity(std::size_t node) const;
-    /** How far it went in the last step, m: an impact within the step changes
-        the velocity, which is that of its end only. */
-    Vector last_way(std::size_t node) const;
+    /** Where they are. */
+    const SurfaceMotion<dim> &motion() const { return motion_; }
 
   private:
     /// how far a face that still holds somewhere has opened
@@ -110,7 +105,6 @@ namespace nsfd
       Opening opening;
     };
     Opening opening_of(const State &state, std::size_t face) const;
-    static Vector at(const std::vector<double> &values, std::size_t node);
     bool is_surface(unsigned int cell, unsigned int face) const;
     bool has_opened(unsigned int cell, unsigned int face) const;
     bool share_separated(const State &state);
@@ -118,8 +112,6 @@ namespace nsfd
     void set_sides();
     void set_moving_nodes();
     void set_pieces();
-    void share_rest();
-    void share_motion(const State &old);
     void add_face(unsigned int cell, unsigned int face, bool touches);
     bool is_behind(unsigned int vertex, unsigned int facet) const;
     void add_obstacle_faces();
@@ -127,12 +119,12 @@ namespace nsfd
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
     const BodyTable &table_;
-    const BodyLayout<dim> &bodies_;
     const Communicator &all_;
     const SurfaceCells<dim> &cells_;
     const ContactPlaces<dim> &places_;
     const ContactBlocks &blocks_;
     const bool obstacle_for_all_; ///< one of them
+    SurfaceMotion<dim> motion_;
 
     struct Side {
       unsigned int cell, face;
@@ -145,9 +137,6 @@ namespace nsfd
     /// by cell: what hangs together by faces that hold; of what has no wholes
     std::vector<unsigned int> piece_of_cell_;
     bool known_ = false;
-    std::vector<std::size_t> moving_nodes_, own_moving_nodes_; ///< of surfaces
-    std::vector<double> x_, v_, way_; ///< of them by node, and centres
-    std::vector<double> rest_;        ///< by node, of moving_nodes_
     std::unordered_set<UnorderedPair> joined_;
     Set set_;
     std::vector<ObstacleFace> obstacle_faces_;

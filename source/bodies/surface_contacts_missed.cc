@@ -148,9 +148,9 @@ namespace nsfd
     std::optional<MissedContact<dim>> first;
     look_at_obstacles(old, next, turning, first);
     if (!input_.contacts.empty()) {
-      const std::vector<double> end = active_.places_in(next);
+      const std::vector<double> end = active_.motion().places_in(next);
       std::vector<std::vector<double>> between;
-      StepPath path = {active_.positions()};
+      StepPath path = {active_.motion().positions()};
       for (std::size_t k = 1; k < turning.n_parts(); ++k) {
         std::vector<double> &x = between.emplace_back(end);
         for (std::size_t node = 0; node < cells_.n_nodes(); ++node) {
@@ -158,7 +158,7 @@ namespace nsfd
               table_.body_of_cell[node / cells_.nodes_per_cell()];
           Vector from, to;
           for (unsigned int d = 0; d < dim; ++d) {
-            from[d] = active_.positions()[node * dim + d];
+            from[d] = active_.motion().positions()[node * dim + d];
             to[d] = end[node * dim + d];
           }
           const Vector there = turning.place(
@@ -169,7 +169,8 @@ namespace nsfd
         // centres
         const double share = double(k) / double(turning.n_parts());
         for (std::size_t i = cells_.n_nodes() * dim; i < x.size(); ++i)
-          x[i] = (1. - share) * active_.positions()[i] + share * end[i];
+          x[i] =
+              (1. - share) * active_.motion().positions()[i] + share * end[i];
       }
       for (const auto &x : between)
         path.push_back(x.data());

@@ -111,10 +111,11 @@ namespace nsfd
       row.facet[v] = facet.vertex[v];
     row.weights = pair.weights;
     row.gap = pair.gap;
-    Vector away = row.node == Row::nowhere ? centre_velocity(old, row.body_2)
-                                           : active_.velocity(row.node);
+    Vector away = row.node == Row::nowhere
+                      ? centre_velocity(old, row.body_2)
+                      : active_.motion().velocity(row.node);
     for (unsigned int v = 0; v < row.n_facet; ++v)
-      away -= row.weights[v] * active_.velocity(row.facet[v]);
+      away -= row.weights[v] * active_.motion().velocity(row.facet[v]);
     for (unsigned int d = 0; d < dim; ++d)
       row.rate += pair.normal[d] * away[d];
     if (row.gap < 0. && row.node != Row::nowhere) {
@@ -124,9 +125,9 @@ namespace nsfd
       } else {
         // it may have come in from any side in the last step, or has not been
         // seen while only a corner of it overlapped
-        Vector way = active_.last_way(row.node);
+        Vector way = active_.motion().last_way(row.node);
         for (unsigned int v = 0; v < row.n_facet; ++v)
-          way -= row.weights[v] * active_.last_way(row.facet[v]);
+          way -= row.weights[v] * active_.motion().last_way(row.facet[v]);
         row.approach = way.norm();
         row.overlap = std::min(-row.gap, unseen_depth(pair));
         take_over(pair, old, row);
@@ -175,14 +176,15 @@ namespace nsfd
     for (unsigned int v = 0; v < 2; ++v) {
       row.edge[v] = edge.vertex[v];
       row.facet[v] = other.vertex[v];
-      away += row.edge_weights[v] * active_.velocity(row.edge[v]) -
-              row.weights[v] * active_.velocity(row.facet[v]);
-      last_way += row.edge_weights[v] * active_.last_way(row.edge[v]) -
-                  row.weights[v] * active_.last_way(row.facet[v]);
+      away += row.edge_weights[v] * active_.motion().velocity(row.edge[v]) -
+              row.weights[v] * active_.motion().velocity(row.facet[v]);
+      last_way += row.edge_weights[v] * active_.motion().last_way(row.edge[v]) -
+                  row.weights[v] * active_.motion().last_way(row.facet[v]);
       const double sign = v == 0 ? -1. : 1.;
       for (unsigned int d = 0; d < dim; ++d) {
-        way[0][d] += sign * active_.positions()[row.edge[v] * dim + d];
-        way[1][d] += sign * active_.positions()[row.facet[v] * dim + d];
+        way[0][d] += sign * active_.motion().positions()[row.edge[v] * dim + d];
+        way[1][d] +=
+            sign * active_.motion().positions()[row.facet[v] * dim + d];
       }
     }
     for (unsigned int d = 0; d < dim; ++d)
@@ -255,7 +257,7 @@ namespace nsfd
       point.was_below = old.surface_gap[active_.set().point_places[p]] < 0.;
     }
     search_.find(
-        active_.set().surfaces, active_.positions(), reach,
+        active_.set().surfaces, active_.motion().positions(), reach,
         [this](const unsigned int a, const unsigned int b) {
           return blocks_.of(a, b) < 0 || active_.are_joined(a, b);
         },
