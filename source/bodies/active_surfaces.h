@@ -62,7 +62,8 @@ namespace nsfd
       Surfaces<dim> surfaces;
       std::vector<Origin> point_origins;
       std::vector<std::size_t> point_places;
-      std::vector<std::pair<unsigned int, unsigned int>> points_by_vertex;
+      /// of all faces that are surfaces or have begun to open
+      std::vector<std::pair<unsigned int, std::size_t>> places_by_vertex;
       std::vector<unsigned int> facet_cells, facet_faces; ///< of the cell
     };
     Set &set() { return set_; }
@@ -104,6 +105,7 @@ namespace nsfd
     void set_moving_nodes();
     void share_motion(const State &old);
     void add_face(unsigned int cell, unsigned int face, bool touches);
+    void add_places(unsigned int cell, unsigned int face);
     bool is_behind(unsigned int vertex, unsigned int facet) const;
     void add_obstacle_faces();
 
