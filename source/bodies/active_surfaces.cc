@@ -159,10 +159,7 @@ namespace nsfd
         continue;
       for (unsigned int f = 0; f < cells_.faces(c).size(); ++f) {
         const bool touches = is_surface(c, f);
-        if (!touches && !has_opened(c, f))
-          continue;
-        add_places(c, f);
-        if (touches || dim == 2)
+        if (touches || has_opened(c, f))
           add_face(c, f, touches);
       }
     }
@@ -301,6 +298,11 @@ namespace nsfd
   {
     const FaceNodes<dim> &face = cells_.faces(c)[f];
     const std::size_t first = cells_.first_node(c);
+    for (unsigned int j = 0; j < face.nodes.size(); ++j)
+      set_.places_by_vertex.emplace_back(merged(first + face.nodes[j]),
+                                         places_.of_node(c, f, j));
+    if (!touches && dim == 3) // no surface ends there
+      return;
     std::vector<char> has_point(cells_.nodes_per_cell(), 0);
     for (std::size_t p = 0; p < face.pieces.size(); ++p) {
       typename Surfaces<dim>::Facet facet;
@@ -330,16 +332,6 @@ namespace nsfd
       set_.facet_cells.push_back(c);
       set_.facet_faces.push_back(f);
     }
-  }
-
-  template <int dim>
-  void ActiveSurfaces<dim>::add_places(const unsigned int c,
-                                       const unsigned int f)
-  {
-    const auto &nodes = cells_.faces(c)[f].nodes;
-    for (unsigned int j = 0; j < nodes.size(); ++j)
-      set_.places_by_vertex.emplace_back(
-          merged(cells_.first_node(c) + nodes[j]), places_.of_node(c, f, j));
   }
 
   /**

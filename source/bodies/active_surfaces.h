@@ -105,7 +105,6 @@ namespace nsfd
     void set_moving_nodes();
     void share_motion(const State &old);
     void add_face(unsigned int cell, unsigned int face, bool touches);
-    void add_places(unsigned int cell, unsigned int face);
     bool is_behind(unsigned int vertex, unsigned int facet) const;
     void add_obstacle_faces();
 
