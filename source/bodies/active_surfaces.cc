@@ -163,16 +163,18 @@ namespace nsfd
     set_.point_places.clear();
     set_.facet_cells.clear();
     set_.facet_faces.clear();
+    set_.places_by_vertex.clear();
     for (unsigned int c = 0; c < cells_.size(); ++c) {
       const unsigned int b = table_.body_of_cell[c];
       if (cells_.ball_radius(b) > 0. || !blocks_.may_touch(b))
         continue;
-      for (unsigned int f = 0; f < cells_.faces(c).size(); ++f)
-        if (is_surface(c, f))
-          add_face(c, f, true);
-        else if (dim == 2 && !wholes_.node.empty() && has_opened(c, f))
-          add_face(c, f, false);
+      for (unsigned int f = 0; f < cells_.faces(c).size(); ++f) {
+        const bool touches = is_surface(c, f);
+        if (touches || (!wholes_.node.empty() && has_opened(c, f)))
+          add_face(c, f, touches);
+      }
     }
+    std::sort(set_.places_by_vertex.begin(), set_.places_by_vertex.end());
     for (unsigned int b = 0; b < table_.bodies.size(); ++b)
       if (cells_.ball_radius(b) > 0.)
         set_.surfaces.balls.push_back({b, cells_.ball_radius(b),
@@ -184,10 +186,6 @@ namespace nsfd
                                      const unsigned int facet) {
       return is_behind(vertex, facet);
     };
-    set_.points_by_vertex.clear();
-    for (unsigned int p = 0; p < set_.surfaces.points.size(); ++p)
-      set_.points_by_vertex.emplace_back(set_.surfaces.points[p].vertex, p);
-    std::sort(set_.points_by_vertex.begin(), set_.points_by_vertex.end());
   }
 
   /** Nodes whose motion all ranks need: vertices, and where contacts are. */
@@ -265,6 +263,11 @@ namespace nsfd
   {
     const FaceNodes<dim> &face = cells_.faces(c)[f];
     const std::size_t first = cells_.first_node(c);
+    for (unsigned int j = 0; j < face.nodes.size(); ++j)
+      set_.places_by_vertex.emplace_back(merged(first + face.nodes[j]),
+                                         places_.of_node(c, f, j));
+    if (!touches && dim == 3) // no surface ends there
+      return;
     std::vector<char> has_point(cells_.nodes_per_cell(), 0);
     for (std::size_t p = 0; p < face.pieces.size(); ++p) {
       typename Surfaces<dim>::Facet facet;

@@ -63,7 +63,8 @@ namespace nsfd
       Surfaces<dim> surfaces;
       std::vector<Origin> point_origins;
       std::vector<std::size_t> point_places;
-      std::vector<std::pair<unsigned int, unsigned int>> points_by_vertex;
+      /// of all faces that are surfaces or have begun to open
+      std::vector<std::pair<unsigned int, std::size_t>> places_by_vertex;
       std::vector<unsigned int> facet_cells, facet_faces; ///< of the cell
     };
     Set &set() { return set_; }

@@ -180,11 +180,11 @@ namespace nsfd
                                             const unsigned int vertex,
                                             const int over, Row &row) const
   {
-    const auto &points = active_.set().points_by_vertex;
-    for (auto p = std::lower_bound(points.begin(), points.end(),
-                                   std::pair(vertex, 0u));
-         p != points.end() && p->first == vertex; ++p)
-      take(old, active_.set().point_places[p->second], over, row);
+    const auto &places = active_.set().places_by_vertex;
+    for (auto p = std::lower_bound(places.begin(), places.end(),
+                                   std::pair(vertex, std::size_t(0)));
+         p != places.end() && p->first == vertex; ++p)
+      take(old, p->second, over, row);
   }
 
   /**

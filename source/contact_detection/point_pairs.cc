@@ -157,7 +157,32 @@ namespace nsfd
                !(touch.pair.gap < -same_length * own.size &&
                  is_outside(f, y, foot.place, touch.is_kept,
                             same_length * own.size) &&
-                 !cuts(touch.pair.index, f));
+                 !cuts(touch.pair.index, f)) &&
+               !(touch.pair.gap < -same_length * own.size && !touch.is_kept &&
+                 came_through_next(touch, y));
+      }
+
+      /**
+       * Below a facet and, less deep, below the next one, which a side of this
+       * corner looks at that touches nothing itself yet.
+       */
+      bool came_through_next(const Touch<dim> &touch, const Place<dim> &y) const
+      {
+        const unsigned int other = next_at(surfaces_.points[touch.pair.index]);
+        if (other == NearCandidates::no_facet ||
+            surfaces_.facets[other].touches)
+          return false;
+        for (const unsigned int next : next_[touch.pair.facet]) {
+          if (next == NearCandidates::no_facet)
+            continue;
+          const Plane<dim> &plane = planes_[next];
+          const double height = dot(plane.normal, difference(y, plane.centre));
+          if (height <= 0. && height > touch.pair.gap &&
+              dot(plane.normal, planes_[other].normal) < opposed_below &&
+              projects_into<dim>(surfaces_.facets[next], plane, x_, y))
+            return true;
+        }
+        return false;
       }
 
       /**

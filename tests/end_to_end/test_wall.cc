@@ -61,6 +61,9 @@ namespace end_to_end::test_wall
                         // faces that hold at one end and slide at the other
                         Seed{30070, "large explicit mixed contact"},
                         Seed{30258, "large explicit mixed contact"},
+                        // corners next to faces that begin to open, and close
+                        Seed{79, "large explicit breakable contact"},
+                        Seed{41076, "large explicit breakable contact"},
                         // acute corners that cut through each other
                         Seed{30088, "large explicit breakable contact"},
                         Seed{30290, "large explicit breakable contact"},

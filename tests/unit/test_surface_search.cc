@@ -192,6 +192,39 @@ namespace surface_scene::test_surface_search
     }
   }
 
+  // The tip of body 0 is a little above the bottom of body 1 and far below its
+  // right side. It came in through the bottom, with the side that looks there,
+  // also while that is a face that holds at its other end and touches nothing.
+  TEST(SurfaceSearch, CornerNextToFaceThatHolds)
+  {
+    enum Face { unknown, holds, surface };
+    for (const Face face : {unknown, holds, surface}) {
+      Scene<2> scene;
+      add_polygon(scene, 0, {{0., 4e-4}, {0., -6.8}, {5.1, -4.7}}); // to 102
+      add_polygon(scene, 1, {{0.63, 0.}, {-2.2, 4.5}, {-6.6, 0.}}); // to 105
+      if (face == holds)
+        scene.surfaces.facets[2].touches = false;
+      else if (face == unknown)
+        scene.surfaces.facets.erase(scene.surfaces.facets.begin() + 2);
+      scene.all_points();
+      auto &points = scene.surfaces.points;
+      points.erase(
+          std::remove_if(points.begin(), points.end(),
+                         [&](const auto &point) {
+                           return !scene.surfaces.facets[point.facet].touches;
+                         }),
+          points.end());
+      const auto pairs = scene.find(0.01).points;
+      ASSERT_EQ(pairs.size(), face == holds ? 0u : 1u);
+      if (face == unknown)
+        EXPECT_EQ(scene.surfaces.facets[pairs[0].facet].key, 103u);
+      if (face == surface) {
+        EXPECT_EQ(scene.surfaces.facets[pairs[0].facet].key, 105u);
+        EXPECT_NEAR(pairs[0].gap, -4e-4, 1e-15);
+      }
+    }
+  }
+
   // The tip of body 0 is a little inside the left side of body 1, whose lower
   // corner is in front of the tip's lower side: it does not touch the upper
   // one, although the side that leads to it cuts the tip.
