@@ -3,7 +3,7 @@
 #include "body_layout.h"
 #include "surface_cells.h"
 
-#include "nsfd/core/communicator.h"
+#include "core/communicator.h"
 
 #include <vector>
 
