@@ -107,6 +107,22 @@ namespace nsfd
   }
 
   template <int dim>
+  void LeapfrogContacts<dim>::set_kinds(const LeapfrogChains<dim> &chains,
+                                        const double way)
+  {
+    for (std::size_t a = 0; a < chains.size(); ++a) {
+      if (chains.is_left(a))
+        continue;
+      // one of the two chains of a point may still hold
+      const PointKind other = chains.other.kind[a];
+      state_.kind[chains.point[a]] = left(chains, a, way).slid ? PointKind::free
+                                     : other == PointKind::free
+                                         ? chains.problem.kind[a]
+                                         : other;
+    }
+  }
+
+  template <int dim>
   std::vector<unsigned int>
   LeapfrogContacts<dim>::part(const LeapfrogChains<dim> &chains,
                               const double way)
@@ -123,12 +139,8 @@ namespace nsfd
       }
       const Left of = left(chains, a, way);
       alone[i] = of.overlaps || (chains.is_broken(a) && of.slid);
-      // one of the two chains of a point may still hold
-      const PointKind other = chains.other.kind[a];
-      state_.kind[i] = of.slid                    ? PointKind::free
-                       : other == PointKind::free ? chains.problem.kind[a]
-                                                  : other;
     }
+    set_kinds(chains, way);
     const auto before = state_.kind;
     surfaces_.part(state_, alone);
     for (std::size_t i = 0; i < before.size(); ++i)

@@ -49,6 +49,9 @@ namespace nsfd
     /** What the surfaces keep is that of @p state, with its groups. */
     void start(const State &state, const CornerGroups<dim> &groups);
 
+    /** How far the faces of active points have opened, @p way as for left():
+        after every step, and when chains have been read. */
+    void set_kinds(const LeapfrogChains<dim> &chains, double way);
     /** Points of the mesh that are left to the search now, by what active ones
         are; @p way as for left(). */
     std::vector<unsigned int> part(const LeapfrogChains<dim> &chains,

@@ -263,8 +263,10 @@ namespace nsfd
       }
       return n + chains.size();
     };
-    if (n_open() == n_open_)
+    if (n_open() == n_open_) {
+      contacts_->set_kinds(points.chains(), way_);
       return false;
+    }
     const auto parted = contacts_->part(points.chains(), way_);
     for (const unsigned int point : parted)
       points.part(point);
@@ -336,12 +338,15 @@ namespace nsfd
   }
 
   template <int dim>
-  void LeapfrogLarge<dim>::serialize(Archive &archive)
+  void LeapfrogLarge<dim>::serialize(Archive &archive,
+                                     const LeapfrogPoints<dim> &points)
   {
     archive.numbers("large", bulk_, stiffening_, way_, front_held_,
                     halving_.waits);
     if (input_.has_history())
       archive.numbers("flow", flow_[0], flow_[1]);
+    if (archive.reads() && contacts_)
+      contacts_->set_kinds(points.chains(), way_);
   }
 
   template class LeapfrogLarge<2>;

@@ -117,7 +117,7 @@ namespace nsfd
     std::string inverted() const;
     void show(State &state) const;
     void fill_counters(std::map<std::string, double> &counters) const;
-    void serialize(Archive &archive);
+    void serialize(Archive &archive, const LeapfrogPoints<dim> &points);
 
   private:
     std::vector<double> front_powers(

@@ -204,7 +204,7 @@ namespace nsfd
     if (rigid_)
       rigid_->serialize(archive);
     if (large_)
-      large_->serialize(archive);
+      large_->serialize(archive, points_);
   }
 
 #define NSFD_INSTANTIATE(dim)                                                  \
