@@ -231,6 +231,7 @@ namespace nsfd
      */
     std::unique_ptr<SceneInput> read_automatic(const Parse &parse,
                                                const std::string &name,
+                                               const bool is_default,
                                                const bool has_step,
                                                InputErrors &errors)
     {
@@ -251,8 +252,9 @@ namespace nsfd
             "explicit: an entry of the scene is for explicit steps alone";
         return longest;
       }
-      if (!scene)
-        return nullptr;
+      // of rigid bodies alone explicit steps cost no less
+      if (!scene || (is_default && all_rigid(*scene)))
+        return scene;
       for (const Diagnostic &one : of_explicit.diagnostics())
         if (one.is_error() && choice->refused.empty())
           choice->refused = one.message;
@@ -279,8 +281,8 @@ namespace nsfd
                               !has_entry(parsed, "Time", "scheme");
       if (can_be_read && (has_entry(parsed, "Time", "scheme", "auto") ||
                           (names_none && moves_far(parsed))))
-        return read_automatic(parse, name, has_entry(parsed, "Time", "step"),
-                              errors);
+        return read_automatic(parse, name, names_none,
+                              has_entry(parsed, "Time", "step"), errors);
       for (const Diagnostic &one : found.diagnostics())
         errors.add(one);
       if (!can_be_read)

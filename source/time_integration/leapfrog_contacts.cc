@@ -69,6 +69,34 @@ namespace nsfd
         }
       }
     }
+
+    /** What hangs together by the nodes of @p groups. */
+    template <int dim>
+    typename ActiveSurfaces<dim>::Wholes
+    wholes_of(const CornerGroups<dim> &groups, const BodyLayout<dim> &layout,
+              const SurfaceContacts<dim> &surfaces, const BodyTable &table)
+    {
+      const std::size_t n_cells = table.body_of_cell.size(),
+                        n = layout.nodes_per_cell();
+      typename ActiveSurfaces<dim>::Wholes wholes;
+      wholes.node.resize(n_cells * n);
+      std::vector<unsigned int> first(groups.size(), unsigned(-1));
+      DisjointSets sets(n_cells);
+      for (unsigned int node = 0; node < n_cells * n; ++node) {
+        // cells of a rigid body have groups of their own
+        unsigned int &of_group =
+            first[groups.of(layout.own_node(surfaces.first_of_rigid(node)))];
+        if (of_group == unsigned(-1))
+          of_group = node;
+        else
+          sets.join(unsigned(node / n), unsigned(of_group / n));
+        wholes.node[node] = of_group;
+      }
+      wholes.of_cell.resize(n_cells);
+      for (unsigned int c = 0; c < n_cells; ++c)
+        wholes.of_cell[c] = sets.first(c);
+      return wholes;
+    }
   } // namespace
 
   template <int dim>
@@ -103,7 +131,10 @@ namespace nsfd
     state_.touches.clear();
     if (state_.obstacle_shift.empty())
       state_.obstacle_shift = initial_shifts(input_);
-    set_wholes(groups);
+    n_groups_ = groups.size();
+    surfaces_.set_wholes(
+        wholes_of(groups, layout_, surfaces_, discretization_.body_table()),
+        state_);
   }
 
   template <int dim>
@@ -192,35 +223,12 @@ namespace nsfd
     groups.scatter(groups.velocity, state_.velocity);
     if (rigid_)
       rigid_->show(state_);
-    if (groups.size() != n_groups_)
-      set_wholes(groups);
-  }
-
-  template <int dim>
-  void LeapfrogContacts<dim>::set_wholes(const CornerGroups<dim> &groups)
-  {
+    if (groups.size() == n_groups_)
+      return;
     n_groups_ = groups.size();
-    const auto &table = discretization_.body_table();
-    const std::size_t n_cells = table.body_of_cell.size(),
-                      n = layout_.nodes_per_cell();
-    typename ActiveSurfaces<dim>::Wholes wholes;
-    wholes.node.resize(n_cells * n);
-    std::vector<unsigned int> first(groups.size(), unsigned(-1));
-    DisjointSets sets(n_cells);
-    for (unsigned int node = 0; node < n_cells * n; ++node) {
-      // cells of a rigid body have groups of their own
-      unsigned int &of_group =
-          first[groups.of(layout_.own_node(surfaces_.first_of_rigid(node)))];
-      if (of_group == unsigned(-1))
-        of_group = node;
-      else
-        sets.join(unsigned(node / n), unsigned(of_group / n));
-      wholes.node[node] = of_group;
-    }
-    wholes.of_cell.resize(n_cells);
-    for (unsigned int c = 0; c < n_cells; ++c)
-      wholes.of_cell[c] = sets.first(c);
-    surfaces_.set_wholes(std::move(wholes), state_);
+    surfaces_.set_wholes(
+        wholes_of(groups, layout_, surfaces_, discretization_.body_table()),
+        state_);
   }
 
   // ------------------------------------------------------ contacts of a step

@@ -153,7 +153,6 @@ namespace nsfd
     };
 
     void follow(const CornerGroups<dim> &groups);
-    void set_wholes(const CornerGroups<dim> &groups);
     bool make(const MovingRow<dim> &row, const CornerGroups<dim> &groups,
               Contact &contact) const;
     Vector relative_velocity(const Contact &contact,
