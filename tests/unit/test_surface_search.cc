@@ -216,8 +216,9 @@ namespace surface_scene::test_surface_search
           points.end());
       const auto pairs = scene.find(0.01).points;
       ASSERT_EQ(pairs.size(), face == holds ? 0u : 1u);
-      if (face == unknown)
+      if (face == unknown) {
         EXPECT_EQ(scene.surfaces.facets[pairs[0].facet].key, 103u);
+      }
       if (face == surface) {
         EXPECT_EQ(scene.surfaces.facets[pairs[0].facet].key, 105u);
         EXPECT_NEAR(pairs[0].gap, -4e-4, 1e-15);
