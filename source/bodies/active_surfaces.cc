@@ -4,11 +4,11 @@
 #include "contact_detection/touching_rules.h"
 #include "core/disjoint_sets.h"
 #include "core/gather.h"
+#include "discretization/face_sizes.h"
 
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace nsfd
 {
@@ -254,7 +254,7 @@ namespace nsfd
     double measure = 0.;
     for (const double weight : cells_.faces(c)[f].weights)
       measure += weight;
-    return inset * (dim == 2 ? measure : std::sqrt(measure));
+    return inset * face_size<dim>(measure);
   }
 
   template <int dim>
@@ -308,8 +308,7 @@ namespace nsfd
                                       const unsigned int f) const
   {
     const auto &facet = set_.surfaces.facets[f];
-    if (piece_of_cell_[vertex / cells_.nodes_per_cell()] !=
-        piece_of_cell_[set_.facet_cells[f]])
+    if (piece_of_cell_[vertex / cells_.nodes_per_cell()] != facet.whole)
       return false;
     const std::size_t first = cells_.first_node(set_.facet_cells[f]);
     for (unsigned int node = 0; node < cells_.nodes_per_cell(); ++node)

@@ -135,7 +135,7 @@ namespace nsfd
     std::vector<char> separated_;  ///< per mesh face
     std::vector<Opening> opening_; ///< per mesh face, of all ranks
     Wholes wholes_;                ///< empty: every body is one
-    /// by cell: what hangs together by faces that hold; of what has no wholes
+    /// by cell: what hangs together, in wholes or else by faces that hold
     std::vector<unsigned int> piece_of_cell_;
     bool known_ = false;
     std::unordered_set<UnorderedPair> joined_;

@@ -8,8 +8,15 @@
 
 namespace nsfd
 {
-  /** By point the size of its face, m: its length, in space the root of its
-      area. */
+  /** Of a face of this length or, in space, area: its length or the root of
+      its area, m. */
+  template <int dim>
+  double face_size(const double measure)
+  {
+    return dim == 2 ? measure : std::sqrt(measure);
+  }
+
+  /** By point that of its face. */
   template <int dim>
   std::vector<double> face_sizes(const InterfacePoints<dim> &points)
   {
@@ -18,8 +25,7 @@ namespace nsfd
       double area = 0.;
       for (unsigned int i = face.first; i < face.first + face.count; ++i)
         area += points.weight[i];
-      std::fill_n(sizes.begin() + face.first, face.count,
-                  dim == 2 ? area : std::sqrt(area));
+      std::fill_n(sizes.begin() + face.first, face.count, face_size<dim>(area));
     }
     return sizes;
   }

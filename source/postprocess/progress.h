@@ -41,7 +41,7 @@ namespace nsfd
     static std::string line(const HistoryRow &row);
 
     /**
-     * " 12 %  t 1.20 of 10.0 µs  ETA 4 min 07 s  step 120 ...": what follows
+     * " 12 %  ETA 4 min 07 s  t 1.200 of 10.00 µs  step 120 ...": what follows
      * from the left in at most @p width columns, no part of it cut.
      * @p remaining in s, NaN if not known.
      */

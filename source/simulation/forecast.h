@@ -21,7 +21,6 @@ namespace nsfd
     std::vector<StepSample> samples; ///< the first one before all steps
     double set_up = 0.;              ///< s of CPU before them
     double cpu = 0., wall = 0.;      ///< s, of the trial
-    bool left = false;               ///< one of them was not over in time
     std::string failure;             ///< why one of them failed; empty: none
   };
 
@@ -46,8 +45,6 @@ namespace nsfd
     void add(double time);
     /** Another step is wanted. Collective. */
     bool goes_on() const;
-    /** A step was left. */
-    void leave() { result_.left = true; }
     void fail(const std::string &why) { result_.failure = why; }
     FirstSteps finish();
 

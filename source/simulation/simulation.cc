@@ -175,8 +175,7 @@ namespace nsfd
           if (state_.step > step)
             trial.add(state_.time);
         }
-      } catch (const StopRequested &) {
-        trial.leave();
+      } catch (const StopRequested &) { // the time of the trial is over
       } catch (const std::exception &error) {
         if (communicator_.size() > 1) // others may wait for this one
           throw;

@@ -27,6 +27,12 @@ namespace end_to_end
     return fs::path(NSFD_SOURCE_DIR) / "prm" / "verification" / (name + ".prm");
   }
 
+  std::string with_mesh(const std::string &file)
+  {
+    return "Mesh/file=" +
+           (quickstart().parent_path() / "meshes" / file).string();
+  }
+
   fs::path benchmark(const std::string &name)
   {
     return fs::path(NSFD_SOURCE_DIR) / "prm" / "benchmarks" / (name + ".prm");

@@ -15,6 +15,8 @@ namespace end_to_end
   std::filesystem::path scene(const std::string &name);
   /** One of prm/benchmarks. */
   std::filesystem::path benchmark(const std::string &name);
+  /** The entry that takes a file of prm/meshes. */
+  std::string with_mesh(const std::string &file);
   /** The scene every user runs first. */
   std::filesystem::path quickstart();
 

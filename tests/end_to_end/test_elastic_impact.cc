@@ -179,10 +179,8 @@ namespace end_to_end::test_elastic_impact
       benchmark. */
   TEST(ElasticImpact, CradleOfDiscs)
   {
-    Launch launch{benchmark("elastic_cradle"), {}};
-    launch.set = {"Mesh/file=" + (benchmark("elastic_cradle").parent_path() /
-                                  "../meshes/cradle_coarse.geo")
-                                     .string()};
+    const Launch launch{benchmark("elastic_cradle"),
+                        {with_mesh("cradle_coarse.geo")}};
     const Workspace workspace;
     const Result result = good_run(workspace, "cradle", launch);
     ASSERT_TRUE(result.completed()) << result.description();

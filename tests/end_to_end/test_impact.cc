@@ -88,10 +88,8 @@ namespace end_to_end
   /** Halves of two discs; a sixth of the triangles of the benchmark. */
   TEST(Impact, DiscsAsByHertz)
   {
-    Launch launch{benchmark("hertz_discs"), {}};
-    launch.set = {"Mesh/file=" + (benchmark("hertz_discs").parent_path() /
-                                  "../meshes/hertz_discs_coarse.geo")
-                                     .string()};
+    const Launch launch{benchmark("hertz_discs"),
+                        {with_mesh("hertz_discs_coarse.geo")}};
     const Workspace workspace;
     const Result result = good_run(workspace, "discs", launch);
     ASSERT_TRUE(result.completed()) << result.description();

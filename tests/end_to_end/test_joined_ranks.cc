@@ -177,10 +177,7 @@ end
          {"Body: plate/cells=4, 20", "Time/end=20 us"},
          true},
         {"taylor_bar",
-         {"Mesh/file=" +
-              (quickstart().parent_path() / "meshes/taylor_bar_coarse.geo")
-                  .string(),
-          "Time/end=1 us"},
+         {with_mesh("taylor_bar_coarse.geo"), "Time/end=1 us"},
          true},
         {"spall_square", {"Mesh/cells=60, 1"}, true},
         {"plate_impact", {"Mesh/cells=80, 1"}, true},

@@ -16,10 +16,8 @@ namespace end_to_end
    */
   TEST(Taylor, CoarseBarEndsAsLongAndWideAsOthers)
   {
-    Launch launch{benchmark("taylor_bar"), {}};
-    launch.set = {"Mesh/file=" + (benchmark("taylor_bar").parent_path() /
-                                  "../meshes/taylor_bar_coarse.geo")
-                                     .string()};
+    const Launch launch{benchmark("taylor_bar"),
+                        {with_mesh("taylor_bar_coarse.geo")}};
     const Workspace workspace;
     const Result result = good_run(workspace, "bar", launch);
     ASSERT_TRUE(result.completed()) << result.description();

@@ -45,11 +45,13 @@ namespace surface_scene
       surfaces.facets.push_back(result);
     }
 
-    /** Every vertex of every facet. */
+    /** Every vertex of every facet that touches. */
     void all_points()
     {
       for (unsigned int f = 0; f < surfaces.facets.size(); ++f)
-        for (unsigned int i = 0; i < surfaces.facets[f].n_vertices; ++i)
+        for (unsigned int i = 0;
+             surfaces.facets[f].touches && i < surfaces.facets[f].n_vertices;
+             ++i)
           surfaces.points.push_back({surfaces.facets[f].vertex[i], f});
     }
 

@@ -105,7 +105,6 @@ namespace nsfd::test_forecast
   {
     const auto scene = read_good(small_scene, no_pictures);
     FirstSteps trial = trial_of(0);
-    trial.left = true;
     const Forecast left = forecast(*scene, trial, {}, 170.);
     EXPECT_FALSE(left.known);
     EXPECT_NE(forecast_text(*scene, trial, left).find("not known"),
