@@ -1,8 +1,9 @@
 #include "gathered.h"
 
+#include <algorithm>
 #include <cstring>
-#include <map>
 #include <stdexcept>
+#include <tuple>
 #include <type_traits>
 
 namespace nsfd
@@ -101,11 +102,53 @@ namespace nsfd
       return package.bytes();
     }
 
-    template <typename T>
-    void append(const std::vector<T> &from, const std::size_t count,
-                std::vector<T> &to)
+    template <int dim>
+    Part<dim> unpack(const std::vector<char> &bytes)
     {
-      to.insert(to.end(), from.begin(), from.begin() + count);
+      Part<dim> part;
+      auto &[bodies, points] = part;
+      Package package(bytes);
+      std::size_t n;
+      package.get(n);
+      bodies.classes.resize(n);
+      for (BodyClass &body : bodies.classes) {
+        package.get(body.n_dofs);
+        package.get(body.n_slots);
+        package.get(body.rigid);
+        package.get(body.material);
+        package.get(body.mass);
+        package.get(body.stiffness);
+        package.get(body.damping);
+        package.get(body.trace);
+        package.get(body.rigid_motions);
+      }
+      package.get(bodies.class_of);
+      package.get(bodies.first_dof);
+      package.get(bodies.first_slot);
+      package.get(bodies.slot_point);
+      package.get(bodies.slot_sign);
+      package.get(n);
+      bodies.extra_points.resize(n);
+      for (auto &[slot, point] : bodies.extra_points) {
+        package.get(slot);
+        package.get(point);
+      }
+      package.get(points.n_points);
+      package.get(points.n_owned);
+      package.get(points.position);
+      package.get(points.frames);
+      package.get(points.weight);
+      package.get(points.faces);
+      return part;
+    }
+
+    /** @p count values of @p from, the first of which is at @p first. */
+    template <typename T>
+    void append(const std::vector<T> &from, const std::size_t first,
+                const std::size_t count, std::vector<T> &to)
+    {
+      const auto begin = from.begin() + long(first);
+      to.insert(to.end(), begin, begin + long(count));
     }
 
     /** Byte counts of all ranks, on the first one, and where they begin. */
@@ -150,105 +193,135 @@ namespace nsfd
   template <int dim>
   void Gathered<dim>::build(const std::vector<std::vector<char>> &packages)
   {
-    std::vector<Bodies> bodies(packages.size());
-    std::vector<InterfacePoints<dim>> points(packages.size());
-    std::map<std::uint64_t, unsigned int> first_of_key;
-    for (std::size_t r = 0; r < packages.size(); ++r) {
-      Package package(packages[r]);
-      std::size_t n;
-      package.get(n);
-      bodies[r].classes.resize(n);
-      for (BodyClass &body : bodies[r].classes) {
-        package.get(body.n_dofs);
-        package.get(body.n_slots);
-        package.get(body.rigid);
-        package.get(body.material);
-        package.get(body.mass);
-        package.get(body.stiffness);
-        package.get(body.damping);
-        package.get(body.trace);
-        package.get(body.rigid_motions);
-      }
-      package.get(bodies[r].class_of);
-      package.get(bodies[r].first_dof);
-      package.get(bodies[r].first_slot);
-      package.get(bodies[r].slot_point);
-      package.get(bodies[r].slot_sign);
-      package.get(n);
-      bodies[r].extra_points.resize(n);
-      for (auto &[slot, point] : bodies[r].extra_points) {
-        package.get(slot);
-        package.get(point);
-      }
-      package.get(points[r].n_points);
-      package.get(points[r].n_owned);
-      package.get(points[r].position);
-      package.get(points[r].frames);
-      package.get(points[r].weight);
-      package.get(points[r].faces);
+    std::vector<Part<dim>> parts;
+    for (const auto &bytes : packages)
+      parts.push_back(unpack<dim>(bytes));
+    add_points(parts);
+    add_bodies(parts);
+  }
 
-      // the points that this rank owns
-      const auto offset = unsigned(points_.n_points);
-      for (auto face : points[r].faces)
-        if (face.first < points[r].n_owned) {
-          face.first += offset;
-          face.neighbor_rank = -1;
-          face.bodies = {{-1, -1}};
-          if (!first_of_key.emplace(face.key, face.first).second)
-            throw std::logic_error("two faces have the same key");
-          points_.face_of.resize(face.first + face.count,
-                                 unsigned(points_.faces.size()));
-          points_.faces.push_back(face);
-        }
-      const std::size_t owned = points[r].n_owned;
-      append(points[r].position, owned * dim, points_.position);
-      append(points[r].frames, owned * dim * dim, points_.frames);
-      append(points[r].weight, owned, points_.weight);
-      points_.n_points += owned;
-      points_.n_owned = points_.n_points;
+  /** The points that the ranks own, face by face in the order of their keys. */
+  template <int dim>
+  void Gathered<dim>::add_points(const std::vector<Part<dim>> &parts)
+  {
+    struct Owned {
+      std::uint64_t key;
+      const InterfacePoints<dim> *points;
+      std::size_t face;
+      std::size_t first; ///< of its points among those of all, rank by rank
+    };
+    std::vector<Owned> faces;
+    std::size_t n = 0;
+    for (const auto &part : parts) {
+      for (std::size_t f = 0; f < part.points.faces.size(); ++f) {
+        const auto &face = part.points.faces[f];
+        if (face.first < part.points.n_owned)
+          faces.push_back({face.key, &part.points, f, n + face.first});
+      }
+      n += part.points.n_owned;
     }
+    std::sort(faces.begin(), faces.end(),
+              [](const Owned &a, const Owned &b) { return a.key < b.key; });
+    place_.resize(n);
+    points_.n_points = points_.n_owned = n;
+    for (const Owned &owned : faces) {
+      auto face = owned.points->faces[owned.face];
+      const std::size_t from = face.first;
+      face.first = unsigned(points_.face_of.size());
+      face.neighbor_rank = -1;
+      face.bodies = {{-1, -1}};
+      if (!points_.faces.empty() && points_.faces.back().key == face.key)
+        throw std::logic_error("two faces have the same key");
+      for (unsigned int k = 0; k < face.count; ++k)
+        place_[owned.first + k] = face.first + k;
+      points_.face_of.insert(points_.face_of.end(), face.count,
+                             unsigned(points_.faces.size()));
+      points_.faces.push_back(face);
+      append(owned.points->position, from * dim, face.count * dim,
+             points_.position);
+      append(owned.points->frames, from * dim * dim, face.count * dim * dim,
+             points_.frames);
+      append(owned.points->weight, from, face.count, points_.weight);
+    }
+  }
 
-    bodies_.first_dof = bodies_.first_slot = {0};
-    std::size_t owned_before = 0;
-    for (std::size_t r = 0; r < packages.size(); ++r) {
+  /** The bodies of the ranks, in the order of the faces that they have. */
+  template <int dim>
+  void Gathered<dim>::add_bodies(std::vector<Part<dim>> &parts)
+  {
+    const auto face_of_key = [this](const std::uint64_t key) {
+      return std::lower_bound(
+          points_.faces.begin(), points_.faces.end(), key,
+          [](const auto &face, const std::uint64_t k) { return face.key < k; });
+    };
+    struct Body {
+      unsigned int first; ///< of the points at its slots
+      signed char sign;
+      std::size_t part, body;
+    };
+    std::vector<Body> order;
+    std::vector<unsigned int> first_class;
+    const unsigned int nowhere = unsigned(points_.n_points);
+    for (std::size_t r = 0; r < parts.size(); ++r) {
+      Bodies &bodies = parts[r].bodies;
       // all points of the rank, one more for slots without a point
-      std::vector<unsigned int> point(points[r].n_points + 1,
-                                      unsigned(points_.n_points));
-      for (std::size_t i = 0; i < points[r].n_owned; ++i)
-        point[i] = unsigned(owned_before + i);
-      owned_before += points[r].n_owned;
-      for (const auto &face : points[r].faces)
+      std::vector<unsigned int> point(parts[r].points.n_points + 1, nowhere);
+      for (const auto &face : parts[r].points.faces)
         for (unsigned int k = 0; k < face.count; ++k)
-          point[face.first + k] = first_of_key.at(face.key) + k;
-
-      const auto first_class = unsigned(bodies_.classes.size()),
-                 first_body = unsigned(bodies_.size());
-      const std::size_t dof = bodies_.n_dofs(),
-                        slot = bodies_.first_slot.back();
-      for (BodyClass &body : bodies[r].classes)
-        bodies_.classes.push_back(std::move(body));
-      for (std::size_t b = 0; b < bodies[r].size(); ++b) {
-        bodies_.class_of.push_back(first_class + bodies[r].class_of[b]);
-        bodies_.classes[bodies_.class_of.back()].bodies.push_back(first_body +
-                                                                  unsigned(b));
-        bodies_.first_dof.push_back(dof + bodies[r].first_dof[b + 1]);
-        bodies_.first_slot.push_back(slot + bodies[r].first_slot[b + 1]);
-        for (std::size_t s = bodies[r].first_slot[b];
-             s < bodies[r].first_slot[b + 1]; ++s) {
-          const unsigned int p = point[bodies[r].slot_point[s]];
-          bodies_.slot_point.push_back(p);
-          bodies_.slot_sign.push_back(bodies[r].slot_sign[s]);
-          if (p < points_.n_points)
-            points_.faces[points_.face_of[p]]
-                .bodies[bodies[r].slot_sign[s] > 0 ? 1 : 0] =
-                int(first_body + b);
-        }
+          point[face.first + k] = face_of_key(face.key)->first + k;
+      for (unsigned int &p : bodies.slot_point)
+        p = point[p];
+      for (auto &extra : bodies.extra_points)
+        extra.second = point[extra.second];
+      for (std::size_t b = 0; b < bodies.size(); ++b) {
+        Body body{nowhere, 0, r, b};
+        for (std::size_t s = bodies.first_slot[b]; s < bodies.first_slot[b + 1];
+             ++s)
+          if (bodies.slot_point[s] < body.first) {
+            body.first = bodies.slot_point[s];
+            body.sign = bodies.slot_sign[s];
+          }
+        order.push_back(body);
       }
-      for (const auto &[s, p] : bodies[r].extra_points)
-        bodies_.extra_points.emplace_back(slot + s, point[p]);
       point.pop_back();
       points_of_.push_back(std::move(point));
+      first_class.push_back(unsigned(bodies_.classes.size()));
+      for (BodyClass &body : bodies.classes)
+        bodies_.classes.push_back(std::move(body));
     }
+    std::stable_sort(
+        order.begin(), order.end(), [](const Body &a, const Body &b) {
+          return std::tie(a.first, a.sign) < std::tie(b.first, b.sign);
+        });
+
+    bodies_.first_dof = bodies_.first_slot = {0};
+    std::vector<std::vector<std::size_t>> slot_of(parts.size());
+    for (std::size_t r = 0; r < parts.size(); ++r)
+      slot_of[r].resize(parts[r].bodies.slot_point.size());
+    for (const auto &[first, sign, r, b] : order) {
+      const Bodies &bodies = parts[r].bodies;
+      const auto number = unsigned(bodies_.size());
+      bodies_.class_of.push_back(first_class[r] + bodies.class_of[b]);
+      bodies_.classes[bodies_.class_of.back()].bodies.push_back(number);
+      bodies_.first_dof.push_back(bodies_.first_dof.back() +
+                                  bodies.first_dof[b + 1] -
+                                  bodies.first_dof[b]);
+      for (std::size_t s = bodies.first_slot[b]; s < bodies.first_slot[b + 1];
+           ++s) {
+        slot_of[r][s] = bodies_.slot_point.size();
+        const unsigned int p = bodies.slot_point[s];
+        bodies_.slot_point.push_back(p);
+        bodies_.slot_sign.push_back(bodies.slot_sign[s]);
+        if (p < nowhere)
+          points_.faces[points_.face_of[p]]
+              .bodies[bodies.slot_sign[s] > 0 ? 1 : 0] = int(number);
+      }
+      bodies_.first_slot.push_back(bodies_.slot_point.size());
+    }
+    for (std::size_t r = 0; r < parts.size(); ++r)
+      for (const auto &[slot, point] : parts[r].bodies.extra_points)
+        bodies_.extra_points.emplace_back(slot_of[r][slot], point);
+    std::sort(bodies_.extra_points.begin(), bodies_.extra_points.end());
   }
 
   template <int dim>
@@ -268,6 +341,12 @@ namespace nsfd
     MPI_Gatherv(owned.data(), int(owned.size() * sizeof(T)), MPI_CHAR,
                 all.data(), bytes.count.data(), bytes.first.data(), MPI_CHAR, 0,
                 communicator_.mpi());
+    if (!communicator_.is_root())
+      return;
+    const std::vector<T> by_rank(all);
+    for (std::size_t i = 0; i < place_.size(); ++i)
+      std::copy_n(by_rank.begin() + long(i * stride), stride,
+                  all.begin() + long(place_[i] * stride));
   }
 
   template <int dim>

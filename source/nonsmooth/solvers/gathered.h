@@ -7,10 +7,18 @@
 
 namespace nsfd
 {
+  /** What a rank has. */
+  template <int dim>
+  struct Part {
+    Bodies bodies;
+    InterfacePoints<dim> points;
+  };
+
   /**
    * All bodies and points of a run on its first rank, for solvers whose factor
-   * is serial. The points that the ranks own come rank by rank; every member
-   * function is called by all ranks, what it returns counts on the first one.
+   * is serial. Their order is that of the keys of the faces: the same, and so
+   * is every sum over them, on any number of ranks. Every member function is
+   * called by all ranks, what it returns counts on the first one.
    */
   template <int dim>
   class Gathered
@@ -36,10 +44,13 @@ namespace nsfd
     void collect(const std::vector<T> &mine, std::size_t stride,
                  std::vector<T> &all) const;
     void build(const std::vector<std::vector<char>> &packages);
+    void add_points(const std::vector<Part<dim>> &parts);
+    void add_bodies(std::vector<Part<dim>> &parts);
 
     const Communicator &communicator_;
     std::size_t n_points_, n_owned_;
     StepTerms terms_;
+    std::vector<unsigned int> place_; ///< of points rank by rank
     std::vector<std::vector<unsigned int>> points_of_; ///< per rank: into all
     Communicator alone_;
     Bodies bodies_;
@@ -52,7 +63,8 @@ namespace nsfd
    * at most @p enough, else @p solve(problem, bodies, impulse, laws, report) at
    * it, on several ranks on the first one with the bodies of all, which @p
    * gathered keeps. Its answer and the counts of its report are those of every
-   * rank. Collective.
+   * rank; if they are to be @p the_same on any number of ranks, one alone puts
+   * its bodies and points in that order as well. Collective.
    */
   template <int dim, typename Solve>
   SolverReport
@@ -61,12 +73,13 @@ namespace nsfd
                     DelassusOperator<dim> &delassus, const double energy_scale,
                     const SolverControl &control, const double enough,
                     std::vector<double> &impulse,
-                    LawEvaluation<dim> &evaluation, const Solve &solve)
+                    LawEvaluation<dim> &evaluation, const Solve &solve,
+                    const bool the_same = false)
   {
     SolverReport report;
     evaluation.update(impulse);
     if (evaluation.error > enough) {
-      if (delassus.communicator().size() == 1)
+      if (delassus.communicator().size() == 1 && !the_same)
         solve(problem, delassus, impulse, evaluation, report);
       else {
         if (!gathered)

@@ -29,13 +29,14 @@ namespace nsfd
         // in the rounds of a large motion, which begin near their solution.
         SolverControl aim = control;
         aim.tolerance *= 0.1;
-        return solve_on_one_rank(gathered_, problem, delassus, energy_scale,
-                                 control, aim.tolerance, impulse, evaluation,
-                                 [&](const auto &whole, auto &bodies, auto &all,
-                                     auto &laws, auto &report) {
-                                   solve_apart(whole, bodies, energy_scale, aim,
-                                               all, laws, report);
-                                 });
+        return solve_on_one_rank(
+            gathered_, problem, delassus, energy_scale, control, aim.tolerance,
+            impulse, evaluation,
+            [&](const auto &whole, auto &bodies, auto &all, auto &laws,
+                auto &report) {
+              solve_apart(whole, bodies, energy_scale, aim, all, laws, report);
+            },
+            true);
       }
 
     private:
