@@ -399,6 +399,13 @@ namespace nsfd
         }
         if (work.from_rest && last)
           break;
+        // stiff springs hide the last digits, softer ones show them
+        if (!solved && last) {
+          if (share == first_share)
+            break;
+          return_to(work, start);
+          share = std::min(10. * share, first_share);
+        }
         if (!last)
           share = std::max(last_share, smaller * share);
         ahead = stretch - 1.;
