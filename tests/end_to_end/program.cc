@@ -29,8 +29,7 @@ namespace end_to_end
 
   std::string with_mesh(const std::string &file)
   {
-    return "Mesh/file=" +
-           (quickstart().parent_path() / "meshes" / file).string();
+    return "Mesh/file=" + (prm_folder() / "meshes" / file).string();
   }
 
   fs::path benchmark(const std::string &name)
@@ -38,10 +37,9 @@ namespace end_to_end
     return fs::path(NSFD_SOURCE_DIR) / "prm" / "benchmarks" / (name + ".prm");
   }
 
-  fs::path quickstart()
-  {
-    return fs::path(NSFD_SOURCE_DIR) / "prm" / "quickstart.prm";
-  }
+  fs::path torn_plate() { return benchmark("torn_plate"); }
+
+  fs::path prm_folder() { return fs::path(NSFD_SOURCE_DIR) / "prm"; }
 
   std::string read_text(const fs::path &file)
   {
