@@ -198,22 +198,23 @@ namespace nsfd
     LineChart weibull_chart(const std::vector<StudyMean> &means)
     {
       LineChart chart(readable(means.front().error) + ": Weibull plot",
-                      {readable(means.front().error), "", true},
+                      {"ln(" + readable(means.front().error) + ")", ""},
                       {"ln(-ln(1 - share of the runs below))", ""});
       unsigned int colour = 0;
       for (const StudyMean &mean : means) {
         const auto shade = LineChart::palette(colour++);
-        std::vector<double> y;
+        std::vector<double> x, y;
+        for (const double value : mean.values)
+          x.push_back(std::log(value));
         for (const double rank : median_ranks(mean.values.size()))
           y.push_back(std::log(-std::log1p(-rank)));
-        chart.add_line(mean.setting, with_gaps(mean.values), with_gaps(y),
-                       shade);
+        chart.add_line(mean.setting, with_gaps(x), with_gaps(y), shade);
         if (const auto fit = weibull_fit(mean.values)) {
           std::vector<double> line;
-          for (const double x : mean.values)
-            line.push_back(fit->shape * std::log(x / fit->scale));
-          chart.add_line(fmt::format("shape {:.3g}", fit->shape), mean.values,
-                         line, shade, true);
+          for (const double at : x)
+            line.push_back(fit->shape * (at - std::log(fit->scale)));
+          chart.add_line(fmt::format("shape {:.3g}", fit->shape), x, line,
+                         shade, true);
         }
       }
       return chart;

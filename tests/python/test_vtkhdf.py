@@ -162,7 +162,7 @@ class Vtkhdf(InScratch):
 
     def test_a_mesh_that_changes(self):
         vtu, hdf = self.both(
-            ADAPTIVE, Time={"end": "200 us"}, Output={"fields every": "20 us"}
+            ADAPTIVE, Time={"end": "500 us"}, Output={"fields every": "50 us"}
         )
         self.compare(vtu, hdf)
         with h5py.File(hdf.folder / "fields.vtkhdf", "r") as file:
