@@ -4,6 +4,10 @@
 #include "processes.h"
 #include "subcommand.h"
 
+#include <signal.h>
+#include <sys/prctl.h>
+
+#include <cstdlib>
 #include <iostream>
 
 int main(int argc, char **argv)
@@ -11,6 +15,10 @@ int main(int argc, char **argv)
   using namespace nsfd;
   if (const auto code = run_gmsh_if_asked(argc, argv))
     return *code;
+  // a case of a study that is killed would go on in a folder which the next
+  // study needs
+  if (std::getenv("NSFD_CASE_OF_A_STUDY") != nullptr)
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
   try {
     CommandLine line;
     if (const auto code =

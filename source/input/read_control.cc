@@ -113,9 +113,13 @@ namespace nsfd
           "output/" + std::filesystem::path(scene.file).stem().string();
     output.fields =
         reader.boolean("fields", true, "write fields.pvd and interfaces.pvd");
-    output.hdf5 = reader.choice("format", "vtu", {"vtu", "hdf5"},
-                                "of the fields: vtu, or hdf5 (with XDMF, for "
-                                "ParaView and h5py)") == "hdf5";
+    const std::string format =
+        reader.choice("format", "vtu", {"vtu", "hdf5", "vtkhdf"},
+                      "of the fields: vtu, hdf5 (with XDMF), or vtkhdf (a file "
+                      "for all times)");
+    output.format = format == "vtkhdf" ? FieldFormat::vtkhdf
+                    : format == "hdf5" ? FieldFormat::hdf5
+                                       : FieldFormat::vtu;
     output.fields_every =
         reader.number("fields every", "0", units::time, Range::non_negative(),
                       "s; 0: at the start and the end");

@@ -2,6 +2,7 @@
 
 #include "bodies/cell_stresses.h"
 #include "discretization/cells.h"
+#include "nsfd/scene/scene_input.h"
 
 #include "discretization/cell_sampler.h"
 
@@ -93,6 +94,16 @@ namespace nsfd
       return result;
     }
 
+    /** Of the blocks of a scene, in their order. */
+    template <typename Blocks>
+    std::vector<std::string> names_of(const Blocks &blocks)
+    {
+      std::vector<std::string> names;
+      for (const auto &block : blocks)
+        names.push_back(block.name);
+      return names;
+    }
+
     /** The points as pieces of their faces. */
     template <int dim>
     class InterfacePieces
@@ -107,10 +118,22 @@ namespace nsfd
             cell_(discretization.cells().element->reference_cell())
       {
         grid.time = state.time;
-        grid.cell_data = {
-            {"beta", 1, {}},     {"jump_n", 1, {}}, {"jump", 3, {}},
-            {"traction", 3, {}}, {"slip", 1, {}},   {"contact", 1, {}},
-            {"kind", 1, {}},     {"block", 1, {}},  {"obstacle", 1, {}}};
+        grid.cell_data = {{"beta", 1, {}},
+                          {"jump_n", 1, {}, "m"},
+                          {"jump", 3, {}, "m"},
+                          {"traction", 3, {}, "Pa"},
+                          {"slip", 1, {}, "m"},
+                          {"contact", 1, {}, "", VtuNumber::code},
+                          {"kind", 1, {}, "", VtuNumber::code},
+                          {"block", 1, {}, "", VtuNumber::integer},
+                          {"obstacle", 1, {}, "", VtuNumber::code}};
+        const SceneInput &input = discretization.input();
+        grid.names = {{"kind_names",
+                       {"prescribed", "elastic", "cohesive", "rigid", "free",
+                        "bonded", "separated"}},
+                      {"block_names", names_of(input.interfaces)}};
+        if (!input.obstacles.empty())
+          grid.names.push_back({"obstacle_names", names_of(input.obstacles)});
         const std::size_t n = discretization.points().n_owned,
                           corners = dim == 2 ? 2 : 4;
         grid.reserve(n * corners, n, n * corners);
@@ -279,11 +302,15 @@ namespace nsfd
 
     VtuGrid grid;
     grid.time = state.time;
-    grid.point_data = {{"displacement", 3, {}},
-                       {"velocity", 3, {}},
-                       {"stress", 6, {}}, // xx yy zz xy yz xz, as ParaView
-                       {"von_mises", 1, {}}};
-    grid.cell_data = {{"fragment", 1, {}}, {"material", 1, {}}};
+    grid.point_data = {{"displacement", 3, {}, "m"},
+                       {"velocity", 3, {}, "m/s"},
+                       // xx yy zz xy yz xz, as ParaView
+                       {"stress", 6, {}, "Pa"},
+                       {"von_mises", 1, {}, "Pa"}};
+    grid.cell_data = {{"fragment", 1, {}, "", VtuNumber::integer},
+                      {"material", 1, {}, "", VtuNumber::integer}};
+    grid.names = {
+        {"material_names", names_of(discretization.input().materials)}};
     const auto append = [](VtuGrid::Array &array, const auto &values) {
       array.values.insert(array.values.end(), values.begin(), values.end());
     };

@@ -2,6 +2,7 @@
 
 #include "field_grids.h"
 #include "snapshot.h"
+#include "vtkhdf_series.h"
 #include "xdmf_series.h"
 
 #include "core/output_folder.h"
@@ -13,11 +14,27 @@
 
 namespace nsfd
 {
+  namespace
+  {
+    /** Null of VTU. */
+    std::unique_ptr<GatheredSeries> gathered_series(const FieldFormat format,
+                                                    const std::string &folder,
+                                                    const std::string &name)
+    {
+      const std::string path = (std::filesystem::path(folder) / name).string();
+      if (format == FieldFormat::hdf5)
+        return std::make_unique<XdmfSeries>(path);
+      if (format == FieldFormat::vtkhdf)
+        return std::make_unique<VtkhdfSeries>(path);
+      return nullptr;
+    }
+  } // namespace
+
   template <int dim>
   FieldOutput<dim>::FieldOutput(const std::string &directory,
                                 const Discretization<dim> &discretization,
                                 const Communicator &communicator,
-                                const bool hdf5)
+                                const FieldFormat format)
       : directory_(directory), discretization_(discretization),
         communicator_(communicator),
         fields_((std::filesystem::path(directory) / "fields.pvd").string()),
@@ -25,12 +42,8 @@ namespace nsfd
             (std::filesystem::path(directory) / "interfaces.pvd").string()),
         face_numbers_(face_numbers(discretization))
   {
-    if (!hdf5)
-      return;
-    const std::filesystem::path folder(directory);
-    xdmf_fields_ = std::make_unique<XdmfSeries>((folder / "fields").string());
-    xdmf_interfaces_ =
-        std::make_unique<XdmfSeries>((folder / "interfaces").string());
+    gathered_fields_ = gathered_series(format, directory, "fields");
+    gathered_interfaces_ = gathered_series(format, directory, "interfaces");
   }
 
   template <int dim>
@@ -47,16 +60,16 @@ namespace nsfd
                                const Fragments<dim> &fragments)
   {
     // one after the other: there is never more than one of them in memory
-    const auto add = [this](PvdSeries &series, const auto &xdmf,
+    const auto add = [this](PvdSeries &series, const auto &gathered,
                             const std::string &base, const VtuGrid &grid) {
-      if (xdmf)
-        add_together(*xdmf, grid);
+      if (gathered)
+        add_together(*gathered, grid);
       else
         write_series(series, base, grid);
     };
-    add(fields_, xdmf_fields_, "fields",
+    add(fields_, gathered_fields_, "fields",
         volume_grid(discretization_, state, fragments));
-    add(interfaces_, xdmf_interfaces_, "interfaces",
+    add(interfaces_, gathered_interfaces_, "interfaces",
         interface_grid(discretization_, face_numbers_, state, time_step));
     ++number_;
   }
@@ -87,13 +100,13 @@ namespace nsfd
     archive.numbers("fields_written", number_);
     if (archive.reads() && communicator_.is_root())
       remove_from(number_, directory_);
-    for (auto *series : {&xdmf_fields_, &xdmf_interfaces_})
+    for (auto *series : {&gathered_fields_, &gathered_interfaces_})
       if (*series) {
         const Archive::Part part(
-            archive, series == &xdmf_fields_ ? "fields" : "interfaces");
+            archive, series == &gathered_fields_ ? "fields" : "interfaces");
         (*series)->serialize(archive);
       }
-    if (xdmf_fields_)
+    if (gathered_fields_)
       return;
     for (auto *series : {&fields_, &interfaces_}) {
       const Archive::Part part(archive,
@@ -134,7 +147,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void FieldOutput<dim>::add_together(XdmfSeries &series,
+  void FieldOutput<dim>::add_together(GatheredSeries &series,
                                       const VtuGrid &piece) const
   {
     const VtuGrid whole = gather_grid(communicator_, piece);

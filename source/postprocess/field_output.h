@@ -2,6 +2,7 @@
 
 #include "bodies/fragments.h"
 #include "nsfd/records/run_record.h"
+#include "nsfd/scene/field_format.h"
 #include "vtu.h"
 
 #include <array>
@@ -13,14 +14,14 @@
 namespace nsfd
 {
   class Archive;
-
-  class XdmfSeries;
+  class GatheredSeries;
 
   /**
    * fields.pvd (volume: displacement, velocity, stress, fragment, material) and
    * interfaces.pvd (faces: beta, jump, traction, slip, contact status), one
    * pair of files per output time, or fields.xdmf and interfaces.xdmf with one
-   * HDF5 file each; pictures for the report on rank 0.
+   * HDF5 file each, or fields.vtkhdf and interfaces.vtkhdf; pictures for the
+   * report on rank 0.
    */
   template <int dim>
   class FieldOutput
@@ -28,7 +29,8 @@ namespace nsfd
   public:
     FieldOutput(const std::string &directory,
                 const Discretization<dim> &discretization,
-                const Communicator &communicator, bool hdf5 = false);
+                const Communicator &communicator,
+                FieldFormat format = FieldFormat::vtu);
     ~FieldOutput();
 
     /** Write both series at the time of @p state. Collective. */
@@ -47,7 +49,7 @@ namespace nsfd
 
   private:
     void together(const std::function<void()> &action) const;
-    void add_together(XdmfSeries &series, const VtuGrid &piece) const;
+    void add_together(GatheredSeries &series, const VtuGrid &piece) const;
     void write_series(PvdSeries &series, const std::string &base,
                       const VtuGrid &grid);
 
@@ -56,7 +58,7 @@ namespace nsfd
     const Communicator &communicator_;
     PvdSeries fields_, interfaces_;
     /// instead of them, or null
-    std::unique_ptr<XdmfSeries> xdmf_fields_, xdmf_interfaces_;
+    std::unique_ptr<GatheredSeries> gathered_fields_, gathered_interfaces_;
     unsigned int number_ = 0;
     /// per face and side: number of the face on the local cell
     std::vector<std::array<unsigned int, 2>> face_numbers_;

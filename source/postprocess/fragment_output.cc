@@ -1,5 +1,7 @@
 #include "fragment_output.h"
 
+#include "vtkhdf_series.h"
+
 #include "core/cost.h"
 #include "nsfd/core/archive.h"
 #include "nsfd/scene/scene_input.h"
@@ -10,6 +12,49 @@
 
 namespace nsfd
 {
+  namespace
+  {
+    /** A vertex for each fragment, with the columns of fragments.csv. */
+    template <int dim>
+    VtuGrid fragment_grid(const double time,
+                          const std::vector<FragmentRecord> &records)
+    {
+      const std::string per_depth = dim == 2 ? "/m" : "";
+      VtuGrid grid;
+      grid.time = time;
+      grid.point_data = {{"fragment", 1, {}, "", VtuNumber::integer},
+                         {"cells", 1, {}, "", VtuNumber::integer},
+                         {"mass", 1, {}, "kg" + per_depth},
+                         {"velocity", 3, {}, "m/s"},
+                         {"spin", 3, {}, "rad/s"},
+                         {"size", 1, {}, "m"},
+                         {"kinetic_translation", 1, {}, "J" + per_depth},
+                         {"kinetic_spin", 1, {}, "J" + per_depth},
+                         {"kinetic", 1, {}, "J" + per_depth},
+                         {"surface", 1, {}, dim == 2 ? "m" : "m^2"}};
+      for (const FragmentRecord &one : records) {
+        const auto point = std::int64_t(grid.points.size());
+        grid.points.push_back(one.centre);
+        grid.add_cell(VtuCell::vertex, {point});
+        const std::array<std::vector<double>, 10> values = {
+            {{double(one.number)},
+             {double(one.cells)},
+             {one.mass},
+             {one.velocity.begin(), one.velocity.end()},
+             {one.spin.begin(), one.spin.end()},
+             {one.size(dim)},
+             {one.kinetic_translation},
+             {one.kinetic_spin},
+             {one.kinetic},
+             {one.surface}}};
+        for (std::size_t k = 0; k < values.size(); ++k)
+          grid.point_data[k].values.insert(grid.point_data[k].values.end(),
+                                           values[k].begin(), values[k].end());
+      }
+      return grid;
+    }
+  } // namespace
+
   template <int dim>
   bool has_fragments(const SceneInput &input,
                      const Discretization<dim> &discretization,
@@ -35,13 +80,18 @@ namespace nsfd
   FragmentOutput<dim>::FragmentOutput(const std::string &directory,
                                       FragmentMotion<dim> motion,
                                       const Communicator &communicator,
-                                      const bool resumes)
+                                      const bool resumes, const bool vtkhdf)
       : path_(directory + "/fragments.csv"), motion_(std::move(motion)),
         communicator_(communicator)
   {
     if (communicator.is_root() && !resumes)
       file_ = std::make_unique<RowFile>(path_, header());
+    if (vtkhdf)
+      series_ = std::make_unique<VtkhdfSeries>(directory + "/fragments");
   }
+
+  template <int dim>
+  FragmentOutput<dim>::~FragmentOutput() = default;
 
   template <int dim>
   std::string FragmentOutput<dim>::header()
@@ -107,6 +157,8 @@ namespace nsfd
     for (const FragmentRecord &record : records_)
       rows += (rows.empty() ? "" : "\n") + line(state.step, state.time, record);
     file_->write(rows);
+    if (series_)
+      series_->add(fragment_grid<dim>(state.time, records_));
   }
 
   template <int dim>
@@ -120,6 +172,10 @@ namespace nsfd
   {
     std::uintmax_t n_bytes = file_ ? file_->n_bytes() : 0;
     archive.numbers("fragments_bytes", n_bytes);
+    if (series_) {
+      const Archive::Part part(archive, "fragments");
+      series_->serialize(archive);
+    }
     if (!archive.reads())
       return;
     std::string failure;

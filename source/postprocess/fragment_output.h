@@ -11,6 +11,7 @@
 namespace nsfd
 {
   class Archive;
+  class GatheredSeries;
   struct SceneInput;
 
   /**
@@ -31,9 +32,14 @@ namespace nsfd
   class FragmentOutput
   {
   public:
-    /** If the run @p resumes, the file is left to serialize(). */
+    /**
+     * If the run @p resumes, the file is left to serialize(). With @p vtkhdf
+     * there is also fragments.vtkhdf, a point for each fragment.
+     */
     FragmentOutput(const std::string &directory, FragmentMotion<dim> motion,
-                   const Communicator &communicator, bool resumes);
+                   const Communicator &communicator, bool resumes,
+                   bool vtkhdf = false);
+    ~FragmentOutput();
 
     /** The rows of this time. Collective. */
     void write(const State &state, const Fragments<dim> &fragments);
@@ -58,7 +64,8 @@ namespace nsfd
     const std::string path_;
     FragmentMotion<dim> motion_;
     const Communicator &communicator_;
-    std::unique_ptr<RowFile> file_; ///< on the first rank
+    std::unique_ptr<RowFile> file_;          ///< on the first rank
+    std::unique_ptr<GatheredSeries> series_; ///< or null
     std::vector<FragmentRecord> records_;
     std::optional<unsigned int> measured_at_; ///< step
   };

@@ -1,5 +1,5 @@
 #include "core/gather.h"
-#include "xdmf_series.h"
+#include "gathered_series.h"
 
 namespace nsfd
 {
@@ -7,6 +7,7 @@ namespace nsfd
   {
     VtuGrid all;
     all.time = piece.time;
+    all.names = piece.names;
     std::vector<int> n_points, n_entries, n_cells;
     all.points = gather(communicator, piece.points, n_points);
     all.cells = gather(communicator, piece.cells, n_cells);
@@ -28,8 +29,9 @@ namespace nsfd
          {std::pair{&piece.point_data, &all.point_data},
           std::pair{&piece.cell_data, &all.cell_data}})
       for (const VtuGrid::Array &array : *own)
-        data->push_back(
-            {array.name, array.components, gather(communicator, array.values)});
+        data->push_back({array.name, array.components,
+                         gather(communicator, array.values), array.unit,
+                         array.number});
     return all;
   }
 } // namespace nsfd

@@ -40,7 +40,7 @@ namespace nsfd
     if (input.output.fields || input.output.report)
       fields_ = std::make_unique<FieldOutput<dim>>(input.output.directory,
                                                    discretization, communicator,
-                                                   input.output.hdf5);
+                                                   input.output.format);
   }
 
   template <int dim>

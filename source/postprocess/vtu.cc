@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <cstring>
 #include <deque>
 #include <sstream>
 #include <stdexcept>
@@ -31,6 +32,12 @@ namespace nsfd
         return offset;
       }
 
+      /** Kept as long as the data. */
+      const char *keep(std::string bytes)
+      {
+        return kept_.emplace_back(std::move(bytes)).data();
+      }
+
       const std::vector<std::string_view> &parts() const { return parts_; }
 
     private:
@@ -40,38 +47,55 @@ namespace nsfd
       }
 
       std::deque<std::uint64_t> sizes_; ///< none of them ever moves
+      std::deque<std::string> kept_;
       std::vector<std::string_view> parts_;
       std::size_t length_ = 0;
     };
 
-    template <typename Number>
-    const char *vtk_type();
-    template <>
-    const char *vtk_type<double>()
-    {
-      return "Float64";
-    }
-    template <>
-    const char *vtk_type<std::int64_t>()
-    {
-      return "Int64";
-    }
-    template <>
-    const char *vtk_type<VtuCell>()
-    {
-      return "UInt8";
-    }
-
-    template <typename Number>
     std::string data_array(const std::string &name,
-                           const unsigned int components, const Number *values,
-                           const std::size_t n_values, AppendedData &data)
+                           const unsigned int components, const char *type,
+                           const void *values, const std::size_t n_bytes,
+                           AppendedData &data)
     {
       return fmt::format("<DataArray type=\"{}\" Name=\"{}\" "
                          "NumberOfComponents=\"{}\" format=\"appended\" "
                          "offset=\"{}\"/>\n",
-                         vtk_type<Number>(), escape_markup(name), components,
-                         data.add(values, n_values * sizeof(Number)));
+                         type, escape_markup(name), components,
+                         data.add(values, n_bytes));
+    }
+
+    const char *vtk_type(const VtuNumber number)
+    {
+      return number == VtuNumber::real      ? "Float64"
+             : number == VtuNumber::integer ? "Int32"
+                                            : "UInt8";
+    }
+
+    /** Numbers one after the other, as they are in the file. */
+    template <typename Number>
+    std::string converted(const std::vector<double> &values)
+    {
+      std::string bytes(values.size() * sizeof(Number), '\0');
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const auto value = static_cast<Number>(values[i]);
+        std::memcpy(&bytes[i * sizeof(Number)], &value, sizeof(Number));
+      }
+      return bytes;
+    }
+
+    std::string data_array(const VtuGrid::Array &array, AppendedData &data)
+    {
+      const void *values = array.values.data();
+      std::size_t size = sizeof(double);
+      if (array.number == VtuNumber::integer) {
+        size = sizeof(std::int32_t);
+        values = data.keep(converted<std::int32_t>(array.values));
+      } else if (array.number == VtuNumber::code) {
+        size = sizeof(std::uint8_t);
+        values = data.keep(converted<std::uint8_t>(array.values));
+      }
+      return data_array(array.name, array.components, vtk_type(array.number),
+                        values, array.values.size() * size, data);
     }
 
     std::string data_section(const char *tag,
@@ -80,9 +104,23 @@ namespace nsfd
     {
       std::string xml = fmt::format("<{}>\n", tag);
       for (const auto &array : arrays)
-        xml += data_array(array.name, array.components, array.values.data(),
-                          array.values.size(), data);
+        xml += data_array(array, data);
       return xml + fmt::format("</{}>\n", tag);
+    }
+
+    /** Texts are the numbers of their bytes, each with a zero behind it. */
+    std::string text_array(const VtuGrid::Names &names)
+    {
+      std::string xml =
+          fmt::format("<DataArray type=\"String\" Name=\"{}\" "
+                      "NumberOfTuples=\"{}\" format=\"ascii\">",
+                      escape_markup(names.array), names.values.size());
+      for (const std::string &value : names.values) {
+        for (const char c : value)
+          xml += fmt::format("{} ", static_cast<unsigned char>(c));
+        xml += "0 ";
+      }
+      return xml + "</DataArray>\n";
     }
 
     void check_sizes(const VtuGrid &grid)
@@ -119,9 +157,10 @@ namespace nsfd
     {
       std::string xml = fmt::format("<{}>\n", tag);
       for (const auto &array : arrays)
-        xml += fmt::format("<PDataArray type=\"Float64\" Name=\"{}\" "
+        xml += fmt::format("<PDataArray type=\"{}\" Name=\"{}\" "
                            "NumberOfComponents=\"{}\"/>\n",
-                           escape_markup(array.name), array.components);
+                           vtk_type(array.number), escape_markup(array.name),
+                           array.components);
       return xml + fmt::format("</{}>\n", tag);
     }
   } // namespace
@@ -164,19 +203,22 @@ namespace nsfd
     xml += fmt::format("<DataArray type=\"Float64\" Name=\"TimeValue\" "
                        "NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n",
                        grid.time);
+    for (const VtuGrid::Names &names : grid.names)
+      xml += text_array(names);
     xml += "</FieldData>\n";
     xml += fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
                        grid.points.size(), grid.cells.size());
     xml += "<Points>\n";
-    xml += data_array("Points", 3,
-                      grid.points.empty() ? nullptr : grid.points[0].data(),
-                      3 * grid.points.size(), data);
+    xml += data_array("Points", 3, "Float64", grid.points.data(),
+                      3 * sizeof(double) * grid.points.size(), data);
     xml += "</Points>\n<Cells>\n";
-    xml += data_array("connectivity", 1, grid.connectivity.data(),
-                      grid.connectivity.size(), data);
-    xml += data_array("offsets", 1, grid.offsets.data(), grid.offsets.size(),
+    for (const auto &[name, numbers] :
+         {std::pair("connectivity", &grid.connectivity),
+          {"offsets", &grid.offsets}})
+      xml += data_array(name, 1, "Int64", numbers->data(),
+                        sizeof(std::int64_t) * numbers->size(), data);
+    xml += data_array("types", 1, "UInt8", grid.cells.data(), grid.cells.size(),
                       data);
-    xml += data_array("types", 1, grid.cells.data(), grid.cells.size(), data);
     xml += "</Cells>\n";
     xml += data_section("PointData", grid.point_data, data);
     xml += data_section("CellData", grid.cell_data, data);

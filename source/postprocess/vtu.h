@@ -22,12 +22,26 @@ namespace nsfd
     hexahedron = 12
   };
 
+  /** What the numbers of an array are in files. */
+  enum class VtuNumber : std::uint8_t {
+    real,    ///< double
+    integer, ///< 32 bits
+    code     ///< 0 to 255
+  };
+
   /** One piece (rank) of an unstructured grid with data at one time. */
   struct VtuGrid {
     struct Array {
       std::string name;
       unsigned int components = 1;
       std::vector<double> values; ///< components are contiguous
+      std::string unit = "";      ///< SI
+      VtuNumber number = VtuNumber::real;
+    };
+    /** What the numbers 0, 1, ... of an array of integers mean. */
+    struct Names {
+      std::string array; ///< "kind_names"
+      std::vector<std::string> values;
     };
 
     double time = 0.;
@@ -36,6 +50,7 @@ namespace nsfd
     std::vector<std::int64_t> connectivity;
     std::vector<std::int64_t> offsets; ///< end of each cell in connectivity
     std::vector<Array> point_data, cell_data;
+    std::vector<Names> names; ///< the same at all times
 
     void add_cell(VtuCell shape, const std::vector<std::int64_t> &corners);
     /** Room for so many, also in the arrays that there are. */

@@ -1,6 +1,6 @@
 #include "xdmf_series.h"
 
-#include "core/hdf5_file.h"
+#include "series_file.h"
 
 #include "core/output_folder.h"
 #include "nsfd/core/archive.h"
@@ -8,12 +8,6 @@
 
 #include <fmt/format.h>
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <stdexcept>
@@ -23,7 +17,6 @@ namespace nsfd
   namespace
   {
     namespace fs = std::filesystem;
-    using stored::Handle;
 
     /** Shapes with any number of corners are followed by that number. */
     struct XdmfShape {
@@ -84,121 +77,25 @@ namespace nsfd
       }
     }
 
-    /**
-     * Room for @p bytes more in the file, or on an empty one. HDF5 must never
-     * meet a full disk: it ends the program when it cannot write what it holds.
-     */
-    void reserve(const std::string &name, const bool anew,
-                 const std::size_t bytes)
-    {
-      const int file = open(name.c_str(),
-                            O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC |
-                                (anew ? O_TRUNC : 0),
-                            0666);
-      int failure = errno;
-      if (file >= 0) {
-        struct stat status = {};
-        fstat(file, &status);
-        failure = posix_fallocate(file, status.st_size, off_t(bytes));
-        if (failure != 0 && ftruncate(file, status.st_size) != 0)
-          failure = errno;
-        close(file);
-      }
-      if (file < 0 || failure != 0)
-        throw OutputError("Cannot write '" + name +
-                          "': " + std::strerror(failure) + '.');
-    }
-
-    /** What a time may take in the file, with all of its headers. */
-    std::size_t most_bytes(const VtuGrid &grid)
-    {
-      std::size_t bytes = 1 << 16;
-      const auto add = [&bytes](const std::size_t n) { bytes += 8 * n + 4096; };
-      add(3 * grid.points.size());
-      add(grid.connectivity.size() + 2 * grid.cells.size());
-      for (const auto *arrays : {&grid.point_data, &grid.cell_data})
-        for (const VtuGrid::Array &array : *arrays)
-          add(array.values.size());
-      return bytes;
-    }
-
-    /** The HDF5 file of a series, open for one time. */
-    class SeriesFile
-    {
-    public:
-      explicit SeriesFile(const std::string &name, const bool anew)
-          : name_(name),
-            file_(anew ? H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT,
-                                   H5P_DEFAULT)
-                       : H5Fopen(name.c_str(), H5F_ACC_RDWR, H5P_DEFAULT),
-                  H5Fclose)
-      {
-        demand(bool(file_));
-      }
-
-      void group(const std::string &path)
-      {
-        const Handle group(H5Gcreate2(file_, path.c_str(), H5P_DEFAULT,
-                                      H5P_DEFAULT, H5P_DEFAULT),
-                           H5Gclose);
-        demand(bool(group));
-      }
-
-      void write(const std::string &path, const hid_t type,
-                 const std::vector<hsize_t> &shape, const void *values)
-      {
-        const Handle space(
-            H5Screate_simple(int(shape.size()), shape.data(), nullptr),
-            H5Sclose);
-        const Handle set(H5Dcreate2(file_, path.c_str(), type, space,
-                                    H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                         H5Dclose);
-        demand(set &&
-               H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
-      }
-
-      void link(const std::string &from, const std::string &to)
-      {
-        demand(H5Lcreate_hard(file_, from.c_str(), file_, to.c_str(),
-                              H5P_DEFAULT, H5P_DEFAULT) >= 0);
-      }
-
-      bool has(const std::string &path) const
-      {
-        return H5Lexists(file_, path.c_str(), H5P_DEFAULT) > 0;
-      }
-
-      void remove(const std::string &path)
-      {
-        demand(H5Ldelete(file_, path.c_str(), H5P_DEFAULT) >= 0);
-      }
-
-      void flush() { demand(H5Fflush(file_, H5F_SCOPE_LOCAL) >= 0); }
-
-    private:
-      void demand(const bool good) const
-      {
-        if (!good)
-          throw OutputError("Cannot write '" + name_ + "'.");
-      }
-
-      const stored::QuietHdf5 quiet_;
-      const std::string name_;
-      Handle file_;
-    };
-
     std::string group_of(const std::size_t number)
     {
       return fmt::format("{:05}", number);
     }
 
     /** A reference from the XDMF file into the other one. */
-    std::string item(const std::string &type, const std::string &shape,
+    std::string item(const std::string &type, const unsigned int bytes,
+                     const std::string &shape, const std::string &place)
+    {
+      return fmt::format("<DataItem NumberType=\"{}\" Precision=\"{}\" "
+                         "Dimensions=\"{}\" Format=\"HDF\">{}</DataItem>",
+                         type, bytes, shape, place);
+    }
+    std::string item(const VtuNumber number, const std::string &shape,
                      const std::string &place)
     {
-      return fmt::format("<DataItem NumberType=\"{}\" Precision=\"8\" "
-                         "Dimensions=\"{}\" Format=\"HDF\">{}</DataItem>",
-                         type, shape, place);
+      return number == VtuNumber::real      ? item("Float", 8, shape, place)
+             : number == VtuNumber::integer ? item("Int", 4, shape, place)
+                                            : item("UChar", 1, shape, place);
     }
   } // namespace
 
@@ -216,19 +113,25 @@ namespace nsfd
                            grid.offsets == last_mesh_.offsets;
     const bool anew = entries_.empty();
     OutputFolder::instance().note(path_ + ".h5");
-    reserve(path_ + ".h5", anew, most_bytes(grid));
+    reserve_room(path_ + ".h5", anew, most_bytes(grid));
     SeriesFile file(path_ + ".h5", anew);
-    if (anew) // which has emptied it again
-      reserve(path_ + ".h5", false, most_bytes(grid));
+    if (anew) { // which has emptied it again
+      reserve_room(path_ + ".h5", false, most_bytes(grid));
+      file.group("names");
+      for (const VtuGrid::Names &names : grid.names)
+        file.write("names/" + names.array, names.values);
+    }
     file.group(group);
+    file.attribute(group, "time", grid.time);
+    file.attribute(group, "unit", std::string("s"));
     if (same_mesh)
       for (const char *part : {"/points", "/cells"})
         file.link(mesh_ + part, group + part);
     else {
-      file.write(group + "/points", H5T_NATIVE_DOUBLE, {n, 3},
-                 grid.points.data());
-      file.write(group + "/cells", H5T_NATIVE_INT64, {topology.size()},
-                 topology.data());
+      file.write(group + "/points", H5T_IEEE_F64LE, {n, 3}, grid.points.data(),
+                 H5T_NATIVE_DOUBLE);
+      file.write(group + "/cells", H5T_STD_I64LE, {topology.size()},
+                 topology.data(), H5T_NATIVE_INT64);
     }
     const auto place = [&](const std::string &name) {
       return escape_markup(file_name + ":/" + group + "/" + name);
@@ -238,8 +141,8 @@ namespace nsfd
         "<Topology TopologyType=\"Mixed\" NumberOfElements=\"{}\">{}"
         "</Topology>\n<Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
         group, grid.time, grid.cells.size(),
-        item("Int", std::to_string(topology.size()), place("cells")),
-        item("Float", fmt::format("{} 3", n), place("points")));
+        item("Int", 8, std::to_string(topology.size()), place("cells")),
+        item("Float", 8, fmt::format("{} 3", n), place("points")));
     const auto add_data = [&](const std::vector<VtuGrid::Array> &arrays,
                               const std::string &kind,
                               const std::string &centre) {
@@ -247,13 +150,16 @@ namespace nsfd
       for (const VtuGrid::Array &array : arrays) {
         const std::size_t rows = array.values.size() / array.components;
         const std::string name = kind + "/" + array.name;
-        file.write(group + "/" + name, H5T_NATIVE_DOUBLE,
-                   {rows, array.components}, array.values.data());
+        file.write(group + "/" + name, stored_type(array.number),
+                   {rows, array.components}, array.values.data(),
+                   H5T_NATIVE_DOUBLE);
+        if (!array.unit.empty())
+          file.attribute(group + "/" + name, "unit", array.unit);
         xml += fmt::format(
             "<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}"
             "</Attribute>\n",
             escape_markup(array.name), kind_of(array.components), centre,
-            item("Float", fmt::format("{} {}", rows, array.components),
+            item(array.number, fmt::format("{} {}", rows, array.components),
                  place(name)));
       }
     };

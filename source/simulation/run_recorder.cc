@@ -25,7 +25,9 @@ namespace nsfd
       if (output.fields)
         text += fmt::format("; for ParaView: fields.{0} and interfaces.{0} "
                             "beside it",
-                            output.hdf5 ? "xdmf" : "pvd");
+                            output.format == FieldFormat::vtkhdf ? "vtkhdf"
+                            : output.format == FieldFormat::hdf5 ? "xdmf"
+                                                                 : "pvd");
       return text;
     }
   } // namespace
@@ -113,7 +115,8 @@ namespace nsfd
           input_.output.directory,
           FragmentMotion<dim>(*model_.discretization, communicator_,
                               model_.moving.get(), given ? *given : state),
-          communicator_, options_.resume));
+          communicator_, options_.resume,
+          input_.output.fields && input_.output.format == FieldFormat::vtkhdf));
     }
     if (observers_ && !options_.resume && !options_.check)
       observers_->start_files();

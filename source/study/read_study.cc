@@ -195,22 +195,39 @@ namespace nsfd
       }
     }
 
+    void read_observed(SectionReader &reader, StudyInput &study)
+    {
+      const std::string text = reader.word(
+          "observe", "none",
+          "beside errors: numbers of summary.json, columns as in max work");
+      if (text == "none")
+        return;
+      std::string problem;
+      study.observed = parse_observed(text, problem);
+      if (!problem.empty())
+        reader.error("observe", problem,
+                     "write for example: fragments, max reaction_top_y, final "
+                     "tip/length");
+    }
+
     void read_section(ParameterSection &section, InputErrors &errors,
                       StudyInput &study)
     {
       SectionReader reader(section, errors);
-      study.repeats =
-          reader.integer("repeats", "5", 1, any_count,
-                         "of each case; short ones are repeated more often");
+      read_observed(reader, study);
+      study.repeats = reader.integer(
+          "repeats", study.observed.empty() ? "5" : "1", 1, any_count,
+          "of each case; short ones are repeated more often");
       study.ranks = reader.integer("ranks", "1", 1, any_count,
                                    "of each case; may vary as Study/ranks");
-      study.jobs =
-          reader.integer("jobs", "1", 1, 256,
-                         "cases at a time; run times are reliable with 1 only");
+      study.jobs = reader.integer(
+          "jobs", study.observed.empty() ? "1" : "0", 0, 256,
+          "cases at a time, 0: one per core, the default if quantities are "
+          "observed; run times are reliable with 1 only");
       study.outputs =
           reader.boolean("outputs", false, "fields and reports of every case");
       study.limit_checks = reader.boolean(
-          "limit checks", true,
+          "limit checks", study.observed.empty(),
           "the best cases again, with tolerance/100 and with half the step");
       const std::string errors_text = reader.word(
           "errors", "all", "which ones to show; costs are those of the first");

@@ -88,6 +88,7 @@ namespace nsfd
           all.emplace_back(*entry);
       if (std::getenv("OMP_NUM_THREADS") == nullptr)
         all.emplace_back("OMP_NUM_THREADS=1");
+      all.emplace_back("NSFD_CASE_OF_A_STUDY=1");
       if (mpi.path().empty())
         return all;
       all.push_back(own + mpi.path());
@@ -241,8 +242,10 @@ namespace nsfd
     const std::string record = folder + "/case.json", again = folder + "/again";
     CaseResult result;
     if (resume && text_of(scene) == one.scene &&
-        read_case(record, stamp, repeats, result))
+        read_case(record, stamp, repeats, result)) {
+      observe(study.observed, folder, result.errors);
       return result;
+    }
 
     std::error_code error;
     fs::create_directories(folder, error);
@@ -257,6 +260,8 @@ namespace nsfd
           run_process(command(scene, output, one.ranks), one.ranks > 1, log);
       result.status = status_of(result.exit_code);
       const bool found = add_summary(output + "/summary.json", result);
+      if (found && is_done(result))
+        observe(study.observed, folder, result.errors);
       if (is_done(result) && !found) {
         result.status = CaseResult::Status::broken;
         result.failure = "it left no summary.json";

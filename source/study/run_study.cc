@@ -7,6 +7,7 @@
 #include "core/output_folder.h"
 #include "core/version.h"
 #include "parameters/input_errors.h"
+#include "postprocess/progress.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <exception>
@@ -66,7 +68,10 @@ namespace nsfd
           }
         };
         std::vector<std::thread> threads;
-        for (unsigned int j = 1; j < study_.input.jobs; ++j)
+        started_ = std::chrono::steady_clock::now();
+        n_taken_over_ = n_run_ = 0;
+        for (unsigned int j = 1;
+             j < std::min<std::size_t>(study_.input.jobs, cases.size()); ++j)
           threads.emplace_back(work);
         work();
         for (std::thread &thread : threads)
@@ -92,6 +97,15 @@ namespace nsfd
                               result.taken_over ? ", taken over" : "");
         else
           out_ << "  " << result.failure;
+        ++(result.taken_over ? n_taken_over_ : n_run_);
+        const std::size_t n_left = cases.size() - n_taken_over_ - n_run_;
+        if (n_run_ > 0 && n_left > 0) {
+          const std::chrono::duration<double> passed =
+              std::chrono::steady_clock::now() - started_;
+          out_ << "  ETA "
+               << Progress::duration(passed.count() / double(n_run_) *
+                                     double(n_left));
+        }
         out_ << std::endl;
       }
 
@@ -100,6 +114,8 @@ namespace nsfd
       std::ostream &out_;
       CaseStamp stamp_;
       std::mutex mutex_;
+      std::chrono::steady_clock::time_point started_;
+      std::size_t n_taken_over_ = 0, n_run_ = 0; ///< of the cases at hand
     };
 
     std::string processor()
@@ -239,9 +255,9 @@ namespace nsfd
       };
       if (study.build_type != "Release")
         warn("times of a " + study.build_type + " build mean nothing");
-      if (study.input.jobs > 1)
+      if (study.input.jobs > 1 && study.input.observed.empty())
         warn("cases ran at the same time: their times disturb each other");
-      if (study.input.repeats < 5)
+      if (study.input.repeats < 5 && study.input.observed.empty())
         warn("fewer than 5 repeats: times are less certain");
       for (std::size_t k = 0; k < study.results.size(); ++k)
         if (!study.results[k].reproducible)
@@ -249,6 +265,12 @@ namespace nsfd
       std::set<std::string> shown;
       for (const std::string &name : shown_errors(study))
         shown.insert(name);
+      for (const ObservedQuantity &quantity : study.input.observed)
+        if (std::none_of(study.results.begin(), study.results.end(),
+                         [&](const CaseResult &result) {
+                           return result.errors.count(quantity.name) != 0;
+                         }))
+          warn("`" + quantity.name + "` is observed, but no case has it");
       for (const auto &[name, formula] : study.input.expected_orders)
         if (shown.count(name) == 0)
           warn("expected orders name `" + name + "`, which no case has");
@@ -288,6 +310,9 @@ namespace nsfd
             read_study(command.file, command.set, command.vary, errors)) {
       study.input = *input;
       study.cases = read_cases(study.input, command.set, errors);
+      if (study.input.jobs == 0)
+        study.input.jobs = std::max(1u, std::thread::hardware_concurrency() /
+                                            study.input.ranks);
     }
     err << errors.report();
     if (errors.has_errors())

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "observed.h"
 #include "variation.h"
 
 #include <map>
@@ -27,11 +28,12 @@ namespace nsfd
 
     unsigned int repeats = 5; ///< of each case, at least
     unsigned int ranks = 1;   ///< of each case, where they do not vary
-    unsigned int jobs = 1;    ///< cases at a time
+    unsigned int jobs = 1;    ///< cases at a time; 0: one per core
     bool outputs = false;     ///< fields and reports of the cases as well
     bool limit_checks = true; ///< best cases again, tighter and with half steps
 
-    std::vector<std::string> errors; ///< to show; empty: all there are
+    std::vector<std::string> errors;        ///< to show; empty: all there are
+    std::vector<ObservedQuantity> observed; ///< beside errors, and like them
     int abscissa = -1; ///< variation along which orders are taken, -1: none
     int average = -1;  ///< variation whose errors are averaged, -1: none
     int compare = -1;  ///< variation whose costs are compared, -1: each series

@@ -1,5 +1,7 @@
 #include "study_means.h"
 
+#include "distribution.h"
+
 #include <boost/math/distributions/students_t.hpp>
 #include <fmt/format.h>
 
@@ -26,6 +28,17 @@ namespace nsfd
       return text.empty() ? "all" : text;
     }
 
+    /** The second line of a setting. */
+    std::string spread_text(const std::vector<double> &values)
+    {
+      std::string text =
+          fmt::format("  {:<24} {:12.5g} {:12.5g} {:12.5g}", "", values.front(),
+                      median(values), values.back());
+      if (const auto weibull = weibull_fit(values))
+        text += fmt::format("; {:.3g}, {:.5g}", weibull->shape, weibull->scale);
+      return text + "\n";
+    }
+
     bool overlap(const StudyMean &a, const StudyMean &b)
     {
       return std::abs(a.mean - b.mean) <= a.half_width + b.half_width;
@@ -37,14 +50,15 @@ namespace nsfd
     std::vector<StudyMean> means;
     if (study.input.average < 0)
       return means;
-    for (const std::string &error : shown_errors(study))
+    for (const std::string &error : shown_quantities(study))
       for (const StudySeries &series : series_of(study))
         for (const auto &members : series.members) {
           std::vector<double> values;
           for (const std::size_t k : members) {
             const auto found = study.results[k].errors.find(error);
             if (is_done(study.results[k]) &&
-                found != study.results[k].errors.end())
+                found != study.results[k].errors.end() &&
+                std::isfinite(found->second))
               values.push_back(found->second);
           }
           if (values.empty())
@@ -65,6 +79,8 @@ namespace nsfd
             mean.half_width =
                 boost::math::quantile(t, 0.975) * mean.deviation / std::sqrt(n);
           }
+          std::sort(values.begin(), values.end());
+          mean.values = std::move(values);
           means.push_back(mean);
         }
     return means;
@@ -82,12 +98,15 @@ namespace nsfd
           fmt::format("\n{}: mean, 95 % interval of it, standard deviation, "
                       "runs\n",
                       means[first].error);
+      text += std::string(23 + 2 + 1, ' ') +
+              "smallest, median, largest; Weibull: shape, scale\n";
       bool all_overlap = true;
       for (std::size_t i = first; i < end; ++i) {
         text +=
             fmt::format("  {:<24} {:12.5g} +- {:<10.2g} {:10.2g} {:4}\n",
                         means[i].setting, means[i].mean, means[i].half_width,
                         means[i].deviation, means[i].count);
+        text += spread_text(means[i].values);
         for (std::size_t j = first; j < i; ++j)
           all_overlap = all_overlap && overlap(means[i], means[j]);
       }

@@ -13,6 +13,7 @@ namespace nsfd
     std::size_t count = 0;
     double mean = 0., deviation = 0.; ///< of a sample, n - 1
     double half_width = 0.; ///< of the 95 % interval of the mean, Student's t
+    std::vector<double> values; ///< sorted
   };
 
   /** Every point of every series; empty unless the study averages. */

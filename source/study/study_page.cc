@@ -1,4 +1,5 @@
 #include "cost_comparison.h"
+#include "distribution.h"
 #include "rank_scaling.h"
 #include "study_means.h"
 
@@ -11,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -169,6 +171,62 @@ namespace nsfd
       return chart;
     }
 
+    /** How often a quantity was in which interval, for each setting. */
+    LineChart histogram_chart(const std::vector<StudyMean> &means)
+    {
+      LineChart chart(readable(means.front().error) + ": how often",
+                      {readable(means.front().error), ""}, {"runs", ""});
+      unsigned int colour = 0;
+      for (const StudyMean &mean : means) {
+        const Histogram histogram = histogram_of(mean.values);
+        std::vector<double> x = {histogram.edges.front()}, y = {0.};
+        for (std::size_t i = 0; i < histogram.counts.size(); ++i)
+          for (const double edge :
+               {histogram.edges[i], histogram.edges[i + 1]}) {
+            x.push_back(edge);
+            y.push_back(histogram.counts[i]);
+          }
+        x.push_back(histogram.edges.back());
+        y.push_back(0.);
+        const std::vector<double> floor(x.size(), 0.);
+        chart.add_band(mean.setting, x, floor, y, LineChart::palette(colour++));
+      }
+      return chart;
+    }
+
+    /** Straight where a distribution is that of Weibull; lines are the fits. */
+    LineChart weibull_chart(const std::vector<StudyMean> &means)
+    {
+      LineChart chart(readable(means.front().error) + ": Weibull plot",
+                      {"ln(" + readable(means.front().error) + ")", ""},
+                      {"ln(-ln(1 - share of the runs below))", ""});
+      unsigned int colour = 0;
+      for (const StudyMean &mean : means) {
+        const auto shade = LineChart::palette(colour++);
+        std::vector<double> x, y;
+        for (const double value : mean.values)
+          x.push_back(std::log(value));
+        for (const double rank : median_ranks(mean.values.size()))
+          y.push_back(std::log(-std::log1p(-rank)));
+        chart.add_line(mean.setting, with_gaps(x), with_gaps(y), shade);
+        if (const auto fit = weibull_fit(mean.values)) {
+          std::vector<double> line;
+          for (const double at : x)
+            line.push_back(fit->shape * (at - std::log(fit->scale)));
+          chart.add_line(fmt::format("shape {:.3g}", fit->shape), x, line,
+                         shade, true);
+        }
+      }
+      return chart;
+    }
+
+    /** Of a quantity: "dissipated/damage" is no folder. */
+    std::string file_name(std::string quantity)
+    {
+      std::replace(quantity.begin(), quantity.end(), '/', '_');
+      return quantity;
+    }
+
     class Diagrams
     {
     public:
@@ -217,8 +275,11 @@ namespace nsfd
       const std::string verdict = verdict_text(study);
       if (!verdict.empty())
         html += "<p><b>Orders:</b> " + escape_markup(verdict) + "</p>\n";
+      const std::vector<std::string> limits = limits_of(study);
+      if (limits.empty())
+        return html;
       html += "<p><b>Limit of this study:</b></p><ul>";
-      for (const std::string &line : limits_of(study))
+      for (const std::string &line : limits)
         html += "<li>" + escape_markup(line) + "</li>";
       return html + "</ul>\n";
     }
@@ -258,7 +319,7 @@ namespace nsfd
 
     std::string case_rows(const StudyResults &study)
     {
-      const std::vector<std::string> errors = shown_errors(study);
+      const std::vector<std::string> errors = shown_quantities(study);
       std::vector<std::string> head = {
           "case",    "status",      "unknowns",   "steps",     "Newton",
           "Krylov",  "factors",     "set-up (s)", "solve (s)", "spread",
@@ -362,18 +423,30 @@ namespace nsfd
   void write_study_page(const StudyResults &study, const std::string &directory)
   {
     Diagrams diagrams(directory);
+    const std::vector<StudyMean> means = means_of(study);
+    for (std::size_t first = 0, end = 0; first < means.size(); first = end) {
+      while (end < means.size() && means[end].error == means[first].error)
+        ++end;
+      const std::vector<StudyMean> same(means.begin() + long(first),
+                                        means.begin() + long(end));
+      diagrams.add("histogram_" + file_name(same.front().error),
+                   histogram_chart(same));
+      diagrams.add("weibull_" + file_name(same.front().error),
+                   weibull_chart(same));
+    }
     const std::vector<std::string> errors = shown_errors(study);
     const Axis cpu = {cpu_label, "s", true}, unknowns = {"unknowns", "", true};
     constexpr std::size_t most_errors = 4;
     for (std::size_t e = 0; e < std::min(errors.size(), most_errors); ++e) {
       diagrams.add(
-          "error_time_" + errors[e],
+          "error_time_" + file_name(errors[e]),
           error_chart(study, errors[e], cpu, &StudyPoint::seconds, true));
-      diagrams.add("error_unknowns_" + errors[e],
+      diagrams.add("error_unknowns_" + file_name(errors[e]),
                    error_chart(study, errors[e], unknowns,
                                &StudyPoint::unknowns, false));
       if (study.input.abscissa >= 0)
-        diagrams.add("order_" + errors[e], order_chart(study, errors[e]));
+        diagrams.add("order_" + file_name(errors[e]),
+                     order_chart(study, errors[e]));
     }
     diagrams.add(
         "ledger_defect",

@@ -163,6 +163,8 @@ namespace nsfd
     for (const CaseResult &result : study.results)
       for (const auto &[name, value] : result.errors)
         present.insert(name);
+    for (const ObservedQuantity &quantity : study.input.observed)
+      present.erase(quantity.name);
     std::vector<std::string> names;
     for (const std::string &name : study.input.errors)
       if (present.count(name) != 0)
@@ -175,6 +177,20 @@ namespace nsfd
       if (present.erase(name) != 0)
         names.emplace_back(name);
     names.insert(names.end(), present.begin(), present.end());
+    return names;
+  }
+
+  std::vector<std::string> shown_quantities(const StudyResults &study)
+  {
+    std::vector<std::string> names;
+    for (const ObservedQuantity &quantity : study.input.observed)
+      if (std::any_of(study.results.begin(), study.results.end(),
+                      [&](const CaseResult &result) {
+                        return result.errors.count(quantity.name) != 0;
+                      }))
+        names.push_back(quantity.name);
+    for (const std::string &name : shown_errors(study))
+      names.push_back(name);
     return names;
   }
 

@@ -43,6 +43,9 @@ namespace nsfd
   /** Names of the errors to show, the main one first. */
   std::vector<std::string> shown_errors(const StudyResults &study);
 
+  /** What is observed, and the errors: all that is averaged and listed. */
+  std::vector<std::string> shown_quantities(const StudyResults &study);
+
   /** The points of a series that are done. */
   std::vector<StudyPoint> points_of(const StudyResults &study,
                                     const StudySeries &series,

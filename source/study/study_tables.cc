@@ -1,4 +1,5 @@
 #include "cost_comparison.h"
+#include "distribution.h"
 #include "rank_scaling.h"
 #include "study_means.h"
 
@@ -121,7 +122,7 @@ namespace nsfd
       std::size_t width = 4;
       for (std::size_t k = 0; k < study.cases.size(); ++k)
         width = std::max(width, setting_of(study, k).size());
-      const std::vector<std::string> errors = shown_errors(study);
+      const std::vector<std::string> errors = shown_quantities(study);
       std::string text =
           fixed("case", width) +
           fmt::format("  {:<9} {:>9} {:>7} {:>10} {:>6} {:>8} {:>9}", "status",
@@ -250,6 +251,21 @@ namespace nsfd
       one["at_most"] = row.cost.at_most;
       json["costs"].push_back(one);
     }
+    json["distributions"] = Json::array();
+    for (const StudyMean &mean : means_of(study)) {
+      Json one;
+      one["quantity"] = mean.error;
+      one["setting"] = mean.setting;
+      one["mean"] = number(mean.mean);
+      one["half_width"] = number(mean.half_width);
+      one["deviation"] = number(mean.deviation);
+      one["values"] = mean.values;
+      const auto weibull = weibull_fit(mean.values);
+      one["weibull"] = weibull ? Json{{"shape", number(weibull->shape)},
+                                      {"scale", number(weibull->scale)}}
+                               : Json(nullptr);
+      json["distributions"].push_back(one);
+    }
     json["checks"] = Json::array();
     for (const LimitCheck &check : study.checks)
       json["checks"].push_back({{"case", check.name},
@@ -296,8 +312,10 @@ namespace nsfd
     const std::string verdict = verdict_text(study);
     if (!verdict.empty())
       text += "\nverdict: " + verdict + "\n";
-    text += "\nlimit of this study\n";
-    for (const std::string &line : limits_of(study))
+    const std::vector<std::string> limits = limits_of(study);
+    if (!limits.empty())
+      text += "\nlimit of this study\n";
+    for (const std::string &line : limits)
       text += "  " + line + "\n";
     for (const std::string &warning : study.warnings)
       text += "  warning: " + warning + "\n";

@@ -116,10 +116,10 @@ crack)
 procedures)
   echo "| scene | solver | Newton | Krylov | sweeps | ms | rejected | damage | friction |"
   echo "|---|---|---|---|---|---|---|---|---|"
-  for scene in quickstart verification/midplane verification/dcb_dynamic \
+  for scene in benchmarks/torn_plate verification/midplane verification/dcb_dynamic \
     verification/stop benchmarks/fracture_everywhere; do
     case $scene in
-    quickstart) set -- --set "Time/end=80 us" ;;
+    */torn_plate) set -- --set "Time/end=80 us" ;;
     */midplane) set -- --set "Mesh/cells=10, 10" --set "Time/step=0.3 courant" ;;
     */fracture_everywhere)
       set -- --set "Mesh/cells=20, 20" --set "Time/step=0.1 courant" \
@@ -155,7 +155,7 @@ auto)
         'BEGIN { printf "| `%s` | %s | %d | %d | %d | %d | %.1f |\n", f, h, n, r, d, b, t }'
     done
   }
-  rows quickstart "0.5 0.25 0.16"
+  rows benchmarks/torn_plate "0.5 0.25 0.16"
   rows benchmarks/fracture_everywhere "0.5 0.25 0.12" \
     --set "Mesh/cells=20, 20" --set "Interface: all/stiffness=5.67e18" ;;
 lengths)

@@ -29,8 +29,7 @@ namespace end_to_end
 
   std::string with_mesh(const std::string &file)
   {
-    return "Mesh/file=" +
-           (quickstart().parent_path() / "meshes" / file).string();
+    return "Mesh/file=" + (prm_folder() / "meshes" / file).string();
   }
 
   fs::path benchmark(const std::string &name)
@@ -38,10 +37,9 @@ namespace end_to_end
     return fs::path(NSFD_SOURCE_DIR) / "prm" / "benchmarks" / (name + ".prm");
   }
 
-  fs::path quickstart()
-  {
-    return fs::path(NSFD_SOURCE_DIR) / "prm" / "quickstart.prm";
-  }
+  fs::path torn_plate() { return benchmark("torn_plate"); }
+
+  fs::path prm_folder() { return fs::path(NSFD_SOURCE_DIR) / "prm"; }
 
   std::string read_text(const fs::path &file)
   {
@@ -329,6 +327,30 @@ namespace end_to_end
     return result;
   }
 
+  namespace
+  {
+    template <typename Number>
+    void append(const char *bytes, const std::size_t n_bytes,
+                std::vector<double> &values)
+    {
+      std::vector<Number> numbers(n_bytes / sizeof(Number));
+      std::memcpy(numbers.data(), bytes, numbers.size() * sizeof(Number));
+      values.insert(values.end(), numbers.begin(), numbers.end());
+    }
+
+    /** Numbers of a type of VTK. */
+    void append(const std::string &type, const char *bytes,
+                const std::size_t n_bytes, std::vector<double> &values)
+    {
+      if (type == "Float64")
+        append<double>(bytes, n_bytes, values);
+      else if (type == "Int32")
+        append<std::int32_t>(bytes, n_bytes, values);
+      else
+        append<std::uint8_t>(bytes, n_bytes, values);
+    }
+  } // namespace
+
   std::vector<Snapshot> snapshots(const fs::path &directory,
                                   const std::string &base)
   {
@@ -341,7 +363,8 @@ namespace end_to_end
       if (std::regex_match(name, match, pattern))
         pieces[std::stoi(match[1])].push_back(file.path());
     }
-    const std::regex array("<DataArray type=\"Float64\" Name=\"([^\"]+)\" "
+    const std::regex array("<DataArray type=\"(Float64|Int32|UInt8)\" "
+                           "Name=\"([^\"]+)\" "
                            "NumberOfComponents=\"([0-9]+)\" "
                            "format=\"appended\" offset=\"([0-9]+)\"");
     std::vector<Snapshot> result;
@@ -355,13 +378,11 @@ namespace end_to_end
         for (std::sregex_iterator match(header.begin(), header.end(), array),
              end;
              match != end; ++match) {
-          const char *block = blocks + std::stoul((*match)[3]);
+          const char *block = blocks + std::stoul((*match)[4]);
           std::uint64_t n_bytes;
           std::memcpy(&n_bytes, block, sizeof(n_bytes));
-          auto &values = snapshot[(*match)[1]];
-          const std::size_t old = values.size();
-          values.resize(old + n_bytes / sizeof(double));
-          std::memcpy(values.data() + old, block + sizeof(n_bytes), n_bytes);
+          append((*match)[1], block + sizeof(n_bytes), n_bytes,
+                 snapshot[(*match)[2]]);
         }
       }
       result.push_back(std::move(snapshot));

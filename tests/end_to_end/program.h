@@ -17,8 +17,10 @@ namespace end_to_end
   std::filesystem::path benchmark(const std::string &name);
   /** The entry that takes a file of prm/meshes. */
   std::string with_mesh(const std::string &file);
-  /** The scene every user runs first. */
-  std::filesystem::path quickstart();
+  /** Breaks, closes and rubs: springs, implicit steps. */
+  std::filesystem::path torn_plate();
+  /** All shipped scenes. */
+  std::filesystem::path prm_folder();
 
   std::string read_text(const std::filesystem::path &file);
   void write_text(const std::filesystem::path &file, const std::string &text);

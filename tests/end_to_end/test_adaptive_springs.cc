@@ -112,8 +112,7 @@ end
   // of the bar.
   TEST(Adaptivity, WaveThroughARefinedBarOfSprings)
   {
-    const auto file =
-        quickstart().parent_path() / "benchmarks" / "spring_bar.prm";
+    const auto file = prm_folder() / "benchmarks" / "spring_bar.prm";
     const double speed = 1. / std::sqrt(1.1);
     const Workspace workspace;
     for (const auto &[springs, seconds] :
@@ -148,14 +147,14 @@ end
                                           "Indicator: front/type=process zone",
                                           "Solver/tolerance=1e-12"};
     const Workspace workspace;
-    const Result one = good_run(workspace, "1", {quickstart(), set});
+    const Result one = good_run(workspace, "1", {torn_plate(), set});
     const auto changes = [](const Result &result) {
       return result.summary["counters"]["mesh_changes"].get<double>();
     };
     EXPECT_GT(changes(one), 3.);
     for (const unsigned int ranks : {2u, 3u}) {
       const Result more = good_run(workspace, std::to_string(ranks),
-                                   {quickstart(), set, ranks});
+                                   {torn_plate(), set, ranks});
       EXPECT_EQ(changes(more), changes(one));
       expect_below(std::to_string(ranks) + " ranks: energies",
                    energy_difference(one.history, more.history), 1e-9);

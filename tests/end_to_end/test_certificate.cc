@@ -447,10 +447,10 @@ end
     const std::vector<std::string> too_hard = {
         "Solver/maximum iterations=1", "Solver/method=dual newton",
         "Time/maximum bisections=0", "Solver/tolerance=1e-13"};
-    const Result result = run(workspace, "failed", {quickstart(), too_hard});
+    const Result result = run(workspace, "failed", {torn_plate(), too_hard});
     ASSERT_EQ(result.outcome.exit_code, 3) << result.description();
     EXPECT_EQ(verdict(result, "end"), "not ok");
-    const std::string last = last_lines(workspace, quickstart(), too_hard);
+    const std::string last = last_lines(workspace, torn_plate(), too_hard);
     EXPECT_NE(last.find("not reached: the step of"), std::string::npos) << last;
   }
 
@@ -458,7 +458,7 @@ end
   {
     const Workspace workspace;
     const Launch what = {
-        quickstart(),
+        torn_plate(),
         {"Mesh/cells=12, 9", "Time/step=0.8 us", "Time/end=40 us"}};
     const Result whole = good_run(workspace, "whole", what);
     const Launch stored = storing(what, 20);

@@ -28,8 +28,7 @@ namespace end_to_end::test_command_line
         (fs::path(NSFD_SOURCE_DIR) / "prm" / "paper" / "figure_03.prm")
             .string();
     const std::string fracture_scene =
-        (quickstart().parent_path() / "benchmarks/fracture_everywhere.prm")
-            .string();
+        (prm_folder() / "benchmarks/fracture_everywhere.prm").string();
 
     const std::vector<Call> calls = {
         {"nothing", {}, 2, "nsfd FILE.prm"},
@@ -307,7 +306,7 @@ end
 
   namespace
   {
-    const std::vector<std::string> small_quickstart = {
+    const std::vector<std::string> small_plate = {
         "Mesh/cells=12, 9", "Time/step=0.4 us", "Constants/turn=60 us",
         "Constants/pull=4 m/s", "Time/end=120 us"};
   }
@@ -317,7 +316,7 @@ end
   {
     const Workspace workspace;
     const std::vector<Launch> launches = {
-        {quickstart(), small_quickstart},
+        {torn_plate(), small_plate},
         {scene("midplane"), {"Mesh/cells=10, 10", "Solver/tolerance=1e-9"}},
         {scene("incline"), {"Constants/angle=pi / 5"}},
         {scene("mode"), {"Time/end=50 us"}},
@@ -378,7 +377,7 @@ end
   TEST(CommandLine, RunsAreRepeatable)
   {
     const Workspace workspace;
-    const Launch launch{quickstart(), small_quickstart};
+    const Launch launch{torn_plate(), small_plate};
     const Result first = good_run(workspace, "first", launch),
                  second = good_run(workspace, "second", launch);
     ASSERT_TRUE(first.completed() && second.completed());

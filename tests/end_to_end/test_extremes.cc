@@ -153,8 +153,8 @@ end
   {
     const Workspace workspace;
     const Result result =
-        good_run(workspace, "quickstart",
-                 {quickstart(),
+        good_run(workspace, "torn_plate",
+                 {torn_plate(),
                   {"Mesh/cells=12, 9", "Time/step=0.4 us",
                    "Constants/turn=70 us", "Constants/pull=4 m/s",
                    "Interface: all/friction=0", "Output/fields=false"}});

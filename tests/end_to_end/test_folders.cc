@@ -184,6 +184,7 @@ namespace end_to_end::test_folders
     for (const Case &one : {Case{"vtu", "vtu", 1},
                             {"hdf5", "hdf5", 1},
                             {"hdf5_start", "hdf5", 1},
+                            {"vtkhdf", "vtkhdf", 1},
                             {"two", "vtu", 2}}) {
       SCOPED_TRACE(one.name);
       const fs::path place = workspace.path() / one.name;

@@ -24,7 +24,7 @@ namespace end_to_end::test_forecast
     void PrintTo(const Row &row, std::ostream *stream) { *stream << row.name; }
 
     const std::vector<Row> rows = {
-        {"implicit", quickstart().string(), {}, "path       local, blocks of"},
+        {"implicit", torn_plate().string(), {}, "path       local, blocks of"},
         {"long_steps",
          scene("midplane").string(),
          {"Time/step=20 courant"},

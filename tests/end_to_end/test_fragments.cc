@@ -14,7 +14,7 @@ namespace end_to_end::test_fragments
   namespace
   {
     // a plate that falls to pieces within a second or two
-    const Launch breaking = {quickstart(),
+    const Launch breaking = {torn_plate(),
                              {"Mesh/cells=12, 9", "Time/step=0.4 us",
                               "Constants/turn=60 us", "Constants/pull=4 m/s",
                               "Time/end=120 us", "Output/fields every=20 us"}};

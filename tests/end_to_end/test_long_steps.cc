@@ -53,7 +53,7 @@ end
 
     std::filesystem::path pulse()
     {
-      return quickstart().parent_path() / "benchmarks/pulse.prm";
+      return prm_folder() / "benchmarks/pulse.prm";
     }
 
     std::vector<std::string> settings(const std::string &solver,

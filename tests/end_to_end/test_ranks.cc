@@ -79,7 +79,7 @@ namespace end_to_end::test_ranks
           "Interface: midline/crack pressure=10 MPa * (1 + y / 10 um)"},
          "midplane"},
         // damage, contact and friction together, and sweeps where Newton stalls
-        {"quickstart",
+        {"torn_plate",
          {"Mesh/cells=12, 9", "Time/step=0.4 us", "Constants/turn=60 us",
           "Constants/pull=4 m/s", "Time/end=120 us"},
          {"Mesh/cells=12, 9", "Time/step=0.4 us", "Constants/pull=4 m/s",
@@ -88,7 +88,7 @@ namespace end_to_end::test_ranks
 
     std::filesystem::path file_of(const RankRow &row)
     {
-      return row.scene == "quickstart" ? quickstart() : scene(row.scene);
+      return row.scene == "torn_plate" ? torn_plate() : scene(row.scene);
     }
 
     void PrintTo(const RankRow &row, std::ostream *stream)

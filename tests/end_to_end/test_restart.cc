@@ -32,7 +32,7 @@ namespace end_to_end::test_restart
       *stream << row.name;
     }
 
-    const Launch breaking = {quickstart(),
+    const Launch breaking = {torn_plate(),
                              {"Mesh/cells=12, 9", "Time/step=0.4 us",
                               "Constants/turn=60 us", "Constants/pull=4 m/s",
                               "Time/end=120 us"}};
@@ -88,6 +88,7 @@ namespace end_to_end::test_restart
               {"Interface: midline/crack pressure=10 MPa * (1 + y / 10 um)"})},
         {"extrinsic", midplane},
         {"fields_in_hdf5", with(midplane, {"Output/format=hdf5"})},
+        {"fields_in_vtkhdf", with(midplane, {"Output/format=vtkhdf"})},
         {"extrinsic_long_steps",
          with(midplane, {assembled, cg, "Time/step=6 courant"})},
         {"bonded", bonded},

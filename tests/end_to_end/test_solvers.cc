@@ -73,7 +73,7 @@ namespace end_to_end::test_solvers
       all.insert(all.end(), set.begin(), set.end());
       return good_run(workspace,
                       name + ", " + choice.method + ", " + choice.path,
-                      {name == "quickstart" ? quickstart() : scene(name), all});
+                      {name == "torn_plate" ? torn_plate() : scene(name), all});
     }
 
     void PrintTo(const SolverRow &row, std::ostream *stream)
@@ -176,7 +176,7 @@ namespace end_to_end::test_solvers
     };
     const Scene scenes[] = {
         {"midplane", {"Mesh/cells=10, 10", "Time/step=0.1 courant"}, 1e-6},
-        {"quickstart", {"Time/end=70 us"}, 1e-6},
+        {"torn_plate", {"Time/end=70 us"}, 1e-6},
         {"stop", {}, 1e-8},
         {"step_load", {}, 1e-7}};
     for (const Scene &row : scenes) {

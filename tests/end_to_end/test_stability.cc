@@ -14,7 +14,7 @@ namespace end_to_end::test_stability
   {
     std::filesystem::path stability_scene(const std::string &name)
     {
-      return quickstart().parent_path() / "stability" / (name + ".prm");
+      return prm_folder() / "stability" / (name + ".prm");
     }
 
     Launch launch(const std::string &name,

@@ -111,7 +111,7 @@ namespace end_to_end::test_units
           "Time/end={2e-3 time}"},
          1e-9},
         // damage, contact, friction, scattered strengths, crack pressure
-        {"quickstart",
+        {"torn_plate",
          {"Mesh/cells=12, 9", "Constants/pull={4 velocity}",
           "Constants/push={4 velocity}", "Constants/rub={2 velocity}",
           "Constants/turn={70e-6 time}",
@@ -139,7 +139,7 @@ namespace end_to_end::test_units
         set.push_back(in_units(assignment, units));
       return good_run(
           workspace, units.name,
-          {row.name == "quickstart" ? quickstart() : scene(row.name), set});
+          {row.name == "torn_plate" ? torn_plate() : scene(row.name), set});
     }
 
     void PrintTo(const UnitRow &row, std::ostream *stream)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "field_format.h"
+
 #include <memory>
 #include <string>
 
@@ -12,7 +14,7 @@ namespace nsfd
     double fields_every = 0.;            ///< s; 0: start and end only
     unsigned int fields_every_steps = 0; ///< 0: not used
     bool fields = true, report = true;
-    bool hdf5 = false;                 ///< fields as HDF5 with XDMF, not as VTU
+    FieldFormat format = FieldFormat::vtu;
     unsigned int checkpoint_steps = 0; ///< 0: not by steps
     double checkpoint_seconds = 0.;    ///< of wall time; 0: not by time
   };

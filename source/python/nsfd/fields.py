@@ -1,4 +1,4 @@
-"""Fields of a run over time: series of VTU files, or HDF5 with an XDMF file."""
+"""Fields of a run over time: VTU files, HDF5 with an XDMF file, or VTKHDF."""
 
 import re
 import xml.etree.ElementTree as ElementTree
@@ -37,14 +37,24 @@ class Grid:
     points has the shape (points, 3); connectivity, offsets and types are those
     of VTK: offsets[c] ends the corners of cell c, types[c] is the number of its
     shape. point_data and cell_data have arrays by name, of the shape (n,) or
-    (n, components). grid["stress"] looks in both."""
+    (n, components). grid["stress"] looks in both. names["kind"] is a list with
+    what the numbers of an array of codes mean."""
 
     def __init__(
-        self, time, points, connectivity, offsets, types, point_data, cell_data
+        self,
+        time,
+        points,
+        connectivity,
+        offsets,
+        types,
+        point_data,
+        cell_data,
+        names=None,
     ):
         self.time, self.points = time, points
         self.connectivity, self.offsets, self.types = connectivity, offsets, types
         self.point_data, self.cell_data = point_data, cell_data
+        self.names = names or {}
 
     @property
     def cells(self):
@@ -104,6 +114,8 @@ class Series(Sequence):
 def read_series(folder, name):
     """The Series fields or interfaces in a folder; empty if there is none."""
     folder = Path(folder)
+    if (folder / f"{name}.vtkhdf").exists():
+        return _vtkhdf_series(folder / f"{name}.vtkhdf")
     if (folder / f"{name}.xdmf").exists():
         return _xdmf_series(folder, name)
     file = folder / f"{name}.pvd"
@@ -123,7 +135,7 @@ def _read_vtk(path, time):
         parts = [_read_vtu(path.parent / one.get("Source")) for one in pieces]
     else:
         parts = [_read_vtu(path)]
-    points, connectivity, offsets, types, point_data, cell_data = zip(*parts)
+    points, connectivity, offsets, types, point_data, cell_data, names = zip(*parts)
     first_point = np.cumsum([0, *map(len, points)])
     first_entry = np.cumsum([0, *map(len, connectivity)])
 
@@ -138,6 +150,7 @@ def _read_vtk(path, time):
         np.concatenate(types),
         joined(point_data),
         joined(cell_data),
+        names[0],
     )
 
 
@@ -161,6 +174,10 @@ def _read_vtu(path):
         nodes = root.iterfind(f".//{section}/DataArray")
         return {node.get("Name"): array(node) for node in nodes}
 
+    def texts(node):
+        codes = [int(code) for code in (node.text or "").split()]
+        return bytes(codes).decode("utf-8", "replace").split("\0")[:-1]
+
     cells = arrays("Cells")
     return (
         arrays("Points")["Points"],
@@ -169,7 +186,65 @@ def _read_vtu(path):
         cells["types"],
         arrays("PointData"),
         arrays("CellData"),
+        {
+            _array_of(node.get("Name")): texts(node)
+            for node in root.iterfind(".//FieldData/DataArray")
+            if node.get("type") == "String"
+        },
     )
+
+
+def _array_of(names):
+    return names.removesuffix("_names")
+
+
+def _texts(group):
+    return {_array_of(key): list(value.asstr()[()]) for key, value in group.items()}
+
+
+def _vtkhdf_series(path):
+    import h5py
+
+    with h5py.File(path, "r") as file:
+        steps = file["VTKHDF/Steps"]
+        times = steps["Values"][: int(steps.attrs["NSteps"])]
+
+    def read(number):
+        with h5py.File(path, "r") as file:
+            root = file["VTKHDF"]
+            steps = root["Steps"]
+            part, point = steps["PartOffsets"][number], steps["PointOffsets"][number]
+            cell = steps["CellOffsets"][number, 0]
+            entry = steps["ConnectivityIdOffsets"][number, 0]
+            n_points, n_cells, n_entries = (
+                root[f"NumberOf{what}"][part]
+                for what in ("Points", "Cells", "ConnectivityIds")
+            )
+
+            def data(kind, rows):
+                begin = {
+                    key: value[number]
+                    for key, value in steps[f"{kind}Offsets"].items()
+                }
+                return {
+                    key: value[begin[key] : begin[key] + rows]
+                    for key, value in root[kind].items()
+                }
+
+            # each mesh has a zero before the ends of its cells
+            first = cell + part + 1
+            return Grid(
+                float(times[number]),
+                root["Points"][point : point + n_points],
+                root["Connectivity"][entry : entry + n_entries],
+                root["Offsets"][first : first + n_cells],
+                root["Types"][cell : cell + n_cells],
+                data("PointData", n_points),
+                data("CellData", n_cells),
+                _texts(root["FieldData"]),
+            )
+
+    return Series(times, read)
 
 
 def _xdmf_series(folder, name):
@@ -192,7 +267,12 @@ def _xdmf_series(folder, name):
 
             cells = _from_mixed(part["cells"][()])
             return Grid(
-                time, part["points"][()], *cells, data("point_data"), data("cell_data")
+                time,
+                part["points"][()],
+                *cells,
+                data("point_data"),
+                data("cell_data"),
+                _texts(file["names"]) if "names" in file else {},
             )
 
     return Series([time for time, _ in entries], read)
