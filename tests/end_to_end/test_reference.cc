@@ -135,6 +135,42 @@ end
     EXPECT_NEAR(first(increment), 6.77e-4, 0.005e-4);
   }
 
+  /**
+   * Collins-Craft, Bourrier and Acary (2022): work is strain, kinetic and
+   * surface energy, 140 J/m^2 on what has broken and at most that beside it,
+   * and the front slows down.
+   */
+  TEST(Reference, DoubleCantilever)
+  {
+    const Workspace workspace;
+    const Result result =
+        good_run(workspace, "run", {reference("double_cantilever")});
+    ASSERT_TRUE(result.completed());
+    EXPECT_EQ(result.counter("rejected_steps"), 0.);
+    const double work = result.history["work"].back(),
+                 broken = result.history["broken_area"].back();
+    expect_below("numerical",
+                 std::abs(result.history["numerical"].back()) / work, 1e-8,
+                 "tolerance of the solver");
+    EXPECT_GE(result.history["damage"].back(), 140. * broken);
+    EXPECT_LE(result.history["damage"].back(), 140. * 1.6e-3);
+    const History front = observed(result, "front");
+    const auto tip = [&](const double time) {
+      double last = 0.;
+      for (std::size_t i = 0; i < front.size(); ++i)
+        if (front["time"][i] <= time)
+          last = front["tip_x"][i];
+      return last;
+    };
+    double way = tip(0.15e-3) - 0.4e-3;
+    for (unsigned int k = 1; k < 4; ++k) {
+      const double next = tip((k + 1) * 0.15e-3) - tip(k * 0.15e-3);
+      EXPECT_LT(next, way) << k;
+      EXPECT_GT(next, 0.) << k;
+      way = next;
+    }
+  }
+
   // The whole base lets go, and takes G on its area: 4 mm, or 2 mm^2.
   TEST(Reference, TornOffAnObstacle)
   {
