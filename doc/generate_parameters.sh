@@ -67,6 +67,14 @@ subsection Obstacle: floor
   set point  = 0, 0
   set normal = 0, 1
 end
+subsection Obstacle: glued
+  set where            = top
+  set point            = 0, 1
+  set normal           = 0, -1
+  set law              = collins-craft
+  set strength         = 1
+  set critical opening = 1
+end
 subsection Time
   set end  = 1
   set step = 1 s

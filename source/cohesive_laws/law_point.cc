@@ -71,8 +71,15 @@ namespace nsfd
       if (mixed_)
         return mixed_secant(from, to);
     }
-    const double b = plateau_ ? plateau_secant(from, to.now.opening)
-                              : scalar_secant(from, to);
+    double b;
+    if (plateau_) {
+      // set-valued at 0: any traction up to the plateau
+      const double d = from.now.opening, opening = to.now.opening,
+                   d_top = std::max({from.largest.opening, d, opening});
+      b = 2. * mean_traction(from, opening) /
+          std::max(d + opening, 1e-12 * d_top);
+    } else
+      b = scalar_secant(from, to);
     return {b, b * stiffness_ratio_};
   }
 
@@ -133,20 +140,18 @@ namespace nsfd
            way;
   }
 
-  /** The same where W = T(d_m) d below d_m. */
-  double LawPoint::plateau_secant(const Reached &from,
-                                  const double opening) const
+  double LawPoint::mean_traction(const Reached &from,
+                                 const double opening) const
   {
-    const double d_m = from.largest.opening, d_top = std::max(d_m, opening);
-    const double d = from.now.opening;
-    // set-valued at 0: any traction up to the plateau
-    const double least = 1e-12 * std::max(d_top, d);
-    const double plateau = traction(d_m);
-    if (opening <= d_m || opening == d)
-      return 2. * plateau / std::max(d + opening, least);
-    const double start = std::max(d, d_m);
-    return 2. * (plateau * (start - d) + released(start, opening)) /
-           ((opening - d) * (opening + d));
+    const double d_m = from.largest.opening, d = from.now.opening;
+    const double start = std::max(d, d_m), s0 = l_ * start, s1 = l_ * opening;
+    if (!(s1 > s0))
+      return traction(d_m);
+    const double growing = a_ * law_.energy_increment(s0, s1) / (s1 - s0);
+    if (d >= start)
+      return growing;
+    return (traction(d_m) * (start - d) + growing * (opening - start)) /
+           (opening - d);
   }
 
   Dissipation LawPoint::dissipated(const LawState &from,

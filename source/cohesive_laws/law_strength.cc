@@ -50,6 +50,8 @@ namespace nsfd
   {
     const double pull = std::max(0., normal),
                  left = std::max(0., shear + friction * std::min(0., normal));
+    if (adds_)
+      return std::max(pull, left / std::sqrt(strength_weight()));
     if (!mixed_)
       return strength_weight() > 0.
                  ? std::sqrt(pull * pull + left * left / strength_weight())

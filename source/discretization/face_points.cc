@@ -8,6 +8,7 @@
 #include "core/communicator.h"
 #include "mesh/mesh_builder.h"
 #include "nsfd/scene/scene_input.h"
+#include "obstacle_of_point.h"
 
 #include <deal.II/grid/cell_id.h>
 #include <deal.II/grid/tria.h>
@@ -148,7 +149,7 @@ namespace nsfd
                                                geometry.is_triangle());
       NewFace<dim> result;
       result.origin = origin;
-      const bool inside = origin.kind == PointOrigin::Kind::interface;
+      const bool inside = origin.kind == PointOrigin::Kind::interface && !frame;
       text_.clear();
       add_id(cell->id(), text_);
       text_ += '/' + std::to_string(f) + '/' +
@@ -233,7 +234,7 @@ namespace nsfd
         for (unsigned int c = 0; c < dim; ++c)
           n[c] = obstacle.normal[c];
         const Frame axes = local_frame<dim>(n / n.norm());
-        add(make_face(cell, f, {PointOrigin::Kind::obstacle, b}, &axes));
+        add(make_face(cell, f, origin_at_obstacle(input_, b), &axes));
       }
     }
 
@@ -353,7 +354,8 @@ namespace nsfd
         return input_.materials[materials_[cell->active_cell_index()]].name;
       };
       for (unsigned int b = 0; b < input_.interfaces.size(); ++b)
-        if (groups_.holds_interior_face(
+        if (input_.interfaces[b].obstacle < 0 &&
+            groups_.holds_interior_face(
                 input_.interfaces[b].where, centre, material(first),
                 material(second),
                 {{first->material_id(), second->material_id()}}, face_id))

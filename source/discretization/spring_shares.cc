@@ -38,7 +38,8 @@ namespace nsfd
     const std::string &material =
         input_.materials[materials_[cell->active_cell_index()]].name;
     for (unsigned int b = 0; b < input_.interfaces.size(); ++b)
-      if (groups_.holds_interior_face(
+      if (input_.interfaces[b].obstacle < 0 &&
+          groups_.holds_interior_face(
               input_.interfaces[b].where, first->center(), material, material,
               {{first->material_id(), first->material_id()}},
               numbers::flat_manifold_id))

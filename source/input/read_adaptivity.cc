@@ -74,6 +74,12 @@ namespace nsfd
                           [](const auto &material) { return material.rigid; }),
           "cells of rigid bodies cannot be refined",
           "make all materials elastic, or remove the section Adaptivity");
+      for (const auto &obstacle : scene.obstacles)
+        refuse(obstacle.cohesion >= 0,
+               fmt::format("bodies stick to Obstacle: {}, and new faces there "
+                           "would not know what they have carried",
+                           obstacle.name),
+               "remove its `law`, or the section Adaptivity");
       refuse(scene.statics && !scene.time.scheme.at_nodes,
              "the mesh of equilibria does not change yet",
              "remove the section Adaptivity, or start from rest");

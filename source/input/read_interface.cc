@@ -1,3 +1,4 @@
+#include "interface_entries.h"
 #include "law_of_shape.h"
 #include "read_sections.h"
 
@@ -32,13 +33,6 @@ namespace nsfd
                          input.where.kind == Where::Kind::all;
       return bonds ? "bonded" : "rigid";
     }
-
-    /** Entries that all cohesive laws have, and only they. */
-    const std::vector<std::string> cohesive_entries = {
-        "opening viscosity", "viscous limit",    "strength factor",
-        "toughness factor",  "scatter",          "strength scatter",
-        "toughness scatter", "strength modulus", "toughness modulus",
-        "unloading"};
 
     /** The law of a block, checked; empty if nothing more can be read. */
     std::string read_law_name(SectionReader &reader)
@@ -89,31 +83,6 @@ namespace nsfd
           reader.number("restitution", "0", units::none, Range::closed(0., 1.),
                         "of Newton's impact law, where beta = 0");
       input.sliding = read_sliding(reader, input.friction);
-    }
-
-    void read_viscosity(SectionReader &reader, InterfaceInput &input)
-    {
-      input.opening_viscosity =
-          reader.number("opening viscosity", "0", units::viscosity_per_length,
-                        Range::non_negative(),
-                        "Pa s/m: traction over opening speed until broken");
-      const std::string limit = "viscous limit",
-                        text = "Pa: traction that it does not exceed, "
-                               "eta v / (1 + eta v / limit); default: none";
-      if (input.opening_viscosity == 0.)
-        reader.refuse({limit}, "there is no `opening viscosity`");
-      else if (reader.optional(limit, text))
-        input.viscous_limit =
-            reader.number(limit, "", units::pressure, Range::positive(), text);
-    }
-
-    void read_damage_start(SectionReader &reader, InterfaceInput &input)
-    {
-      input.friction_exponent = read_friction_exponent(reader);
-      input.broken = read_initial_expression(
-          reader, "broken", "false", units::none,
-          "true, or an expression: open at t = 0 where it is not 0");
-      input.has_broken = !input.broken.is_zero();
     }
 
     /** Common nodes are for bodies of Hooke's law and small strain. */
@@ -189,63 +158,6 @@ namespace nsfd
                                           : IntactFaces::spring;
     }
 
-    Expression read_factor(SectionReader &reader, const std::string &what)
-    {
-      const std::string name = what + " factor";
-      Expression factor = read_initial_expression(
-          reader, name, "1", units::none,
-          "times the " + what + ", of x, y, z; the shape of the law stays");
-      if (factor.is_constant() && !(factor(0., 0., 0.) > 0.))
-        reader.error(
-            name, fmt::format("{} = {} must be positive", name, factor.text()));
-      return factor;
-    }
-
-    Scatter read_scatter(SectionReader &reader, const std::string &what,
-                         const bool weibull)
-    {
-      const std::string width = what + " scatter", modulus = what + " modulus";
-      if (!weibull) {
-        reader.refuse({modulus}, "the scatter is uniform: write scatter = "
-                                 "weibull, or `" +
-                                     width + "`");
-        const double half_width =
-            reader.number(width, "0", units::none, {0., 1., false, true},
-                          "relative half width of random factors");
-        return half_width > 0. ? Scatter{Scatter::Kind::uniform, half_width}
-                               : Scatter{};
-      }
-      reader.refuse({width}, "the scatter is weibull: write `" + modulus + "`");
-      const std::string text =
-          "Weibull modulus of random factors of mean 1; default: no scatter";
-      if (!reader.optional(modulus, text))
-        return {};
-      return {Scatter::Kind::weibull,
-              reader.number(modulus, "", units::none,
-                            {1., std::numeric_limits<double>::infinity()},
-                            text)};
-    }
-
-    /** Strength and toughness from point to point. */
-    void read_point_factors(SectionReader &reader, InterfaceInput &input)
-    {
-      input.strength_factor = read_factor(reader, "strength");
-      input.toughness_factor = read_factor(reader, "toughness");
-      const bool weibull =
-          reader.choice("scatter", "uniform", {"uniform", "weibull"},
-                        "uniform or weibull: distribution of random "
-                        "factors, by the position") == "weibull";
-      if (weibull && !reader.has("strength modulus") &&
-          !reader.has("toughness modulus"))
-        reader.error("scatter", "scatter = weibull without a modulus",
-                     "write `strength modulus`, `toughness modulus` or both");
-      input.strength_scatter = read_scatter(reader, "strength", weibull);
-      input.toughness_scatter = read_scatter(reader, "toughness", weibull);
-      input.seed = reader.integer("seed", "1", 0,
-                                  std::numeric_limits<unsigned int>::max(),
-                                  "of the scatter");
-    }
-
     void read_crack_pressure(SectionReader &reader, InterfaceInput &input)
     {
       const std::string
@@ -267,15 +179,6 @@ namespace nsfd
       input.pressure_threshold =
           reader.number(threshold, fmt::format("{}", input.broken_beta()),
                         units::none, {0., 1., false, true}, threshold_text);
-    }
-
-    /** The law, and what only cohesive laws have besides it. */
-    void read_cohesive_block(SectionReader &reader, InterfaceInput &input)
-    {
-      input.law = read_cohesive_law(reader, input.law_name);
-      read_point_factors(reader, input);
-      read_viscosity(reader, input);
-      input.plateau = read_plateau(reader, input.law.get(), input.law_name);
     }
 
     InterfaceInput read_interface(SectionReader &reader,
@@ -304,7 +207,7 @@ namespace nsfd
                        "intact faces", "crack pressure", "pressure threshold",
                        "dilatancy", "dilatancy saturation", "wear coefficient"},
                       reason);
-        reader.refuse(cohesive_entries, reason);
+        reader.refuse(cohesive_entries(), reason);
         return input;
       }
       if (input.law_name == "contact") {
@@ -313,15 +216,17 @@ namespace nsfd
         const std::string reason =
             "faces of the law `contact` carry no cohesion";
         reader.refuse({"friction exponent", "broken", "intact faces"}, reason);
-        reader.refuse(cohesive_entries, reason);
+        reader.refuse(cohesive_entries(), reason);
         return input;
       }
       if (input.law_name == "elastic") {
         read_springs(reader, input);
-        reader.refuse(cohesive_entries, "the springs of `elastic` never break");
+        reader.refuse(cohesive_entries(),
+                      "the springs of `elastic` never break");
       } else
         read_cohesive_block(reader, input);
       read_contact(reader, input);
+      check_lift(reader, input);
       read_damage_start(reader, input);
       input.intact = read_intact_faces(reader, input, scene);
       read_crack_pressure(reader, input);
@@ -356,6 +261,13 @@ namespace nsfd
                     const std::string &law_name)
   {
     const std::string name = "unloading";
+    if (law && law->adds_openings()) {
+      reader.refuse({name},
+                    fmt::format("the law {} keeps its traction while it "
+                                "closes: it has no elasticity",
+                                law_name));
+      return true;
+    }
     if (law && !law->extrinsic()) {
       reader.refuse({name}, fmt::format("the law {} is intrinsic and closes "
                                         "on its secant",
@@ -398,9 +310,11 @@ namespace nsfd
         "k in 1/Pa of Archard's law: the gap grows by k p_N |U_T|");
   }
 
-  double read_friction_exponent(SectionReader &reader)
+  double read_friction_exponent(SectionReader &reader, const CohesiveLaw *law)
   {
-    return reader.number("friction exponent", "1", units::none,
+    // a law that adds openings has Coulomb friction beside it all the time
+    return reader.number("friction exponent",
+                         law && law->adds_openings() ? "0" : "1", units::none,
                          Range::non_negative(),
                          "s of kappa = (1 - beta)^s; 0: full friction always");
   }

@@ -1,3 +1,4 @@
+#include "interface_entries.h"
 #include "read_sections.h"
 
 #include "nsfd/obstacles/obstacle_shape.h"
@@ -54,7 +55,81 @@ namespace nsfd
       refuse_third_component(reader, {"velocity"}, scene);
     }
 
-    ObstacleInput read_obstacle(SectionReader &reader, const SceneInput &scene)
+    constexpr const char *adhesion_text =
+        "a cohesive law that holds what touches it at t = 0; default: none";
+
+    /** A cohesive law that an obstacle may have; empty, and reported, if not.
+     */
+    std::string read_law_of_obstacle(SectionReader &reader)
+    {
+      const std::string name =
+          collapse_blanks(reader.word("law", "", adhesion_text));
+      const std::vector<std::string> known =
+          CohesiveLawRegistry::instance().names();
+      if (std::find(known.begin(), known.end(), name) == known.end())
+        reader.error("law", fmt::format("law = {} is not a cohesive law", name),
+                     advice_on_name(name, known,
+                                    "`nsfd --list` prints all names; without "
+                                    "`law` bodies touch the obstacle and do "
+                                    "not stick to it"));
+      else
+        return name;
+      reader.accept_everything();
+      return "";
+    }
+
+    /** What holds while beta = 1. */
+    IntactFaces read_intact_adhesion(SectionReader &reader,
+                                     const InterfaceInput &input)
+    {
+      if (input.law && input.law->extrinsic()) {
+        reader.refuse({"intact faces"},
+                      fmt::format("the law {} is extrinsic: faces do not move "
+                                  "until their strength is reached",
+                                  input.law_name));
+        return IntactFaces::rigid;
+      }
+      return reader.choice("intact faces", "spring", {"spring", "unilateral"},
+                           "intrinsic laws, while beta = 1: spring or "
+                           "unilateral") == "unilateral"
+                 ? IntactFaces::unilateral
+                 : IntactFaces::spring;
+    }
+
+    /** The law that holds bodies on it, if the block has one: a further block
+       of SceneInput::interfaces. */
+    void read_adhesion(SectionReader &reader, SceneInput &scene,
+                       ObstacleInput &obstacle)
+    {
+      if (scene.large_motion)
+        return reader.refuse({"law"}, "bodies stick to obstacles in small "
+                                      "motions alone, where they touch them at "
+                                      "the same places throughout");
+      if (!reader.optional("law", adhesion_text)) {
+        reader.refuse(cohesive_entries(), "the obstacle has no cohesive `law`");
+        reader.refuse({"friction exponent", "broken", "intact faces"},
+                      "the obstacle has no cohesive `law`");
+        return;
+      }
+      InterfaceInput input;
+      input.name = obstacle.name;
+      input.where = obstacle.where;
+      input.law_name = read_law_of_obstacle(reader);
+      if (input.law_name.empty())
+        return;
+      input.obstacle = int(scene.obstacles.size());
+      read_cohesive_block(reader, input);
+      input.friction = obstacle.friction;
+      input.restitution = obstacle.restitution;
+      input.sliding = obstacle.sliding;
+      check_lift(reader, input);
+      read_damage_start(reader, input);
+      input.intact = read_intact_adhesion(reader, input);
+      obstacle.cohesion = int(scene.interfaces.size());
+      scene.interfaces.push_back(std::move(input));
+    }
+
+    ObstacleInput read_obstacle(SectionReader &reader, SceneInput &scene)
     {
       ObstacleInput obstacle;
       obstacle.name = reader.block_name();
@@ -79,6 +154,7 @@ namespace nsfd
           reader.number("restitution", "0", units::none, Range::closed(0., 1.),
                         "of Newton's impact law");
       obstacle.sliding = read_sliding(reader, obstacle.friction);
+      read_adhesion(reader, scene, obstacle);
       return obstacle;
     }
   } // namespace

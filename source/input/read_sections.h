@@ -61,8 +61,8 @@ namespace nsfd
   std::shared_ptr<const CohesiveLaw> read_cohesive_law(SectionReader &reader,
                                                        const std::string &name);
 
-  /** s of kappa = (1 - beta)^s. */
-  double read_friction_exponent(SectionReader &reader);
+  /** s of kappa = (1 - beta)^s; null: no law. */
+  double read_friction_exponent(SectionReader &reader, const CohesiveLaw *law);
 
   /** mu. */
   double read_friction(SectionReader &reader);

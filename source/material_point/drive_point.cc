@@ -57,7 +57,11 @@ namespace nsfd
         if (problem_.kind[0] == PointKind::rigid) {
           const double r2 = law_.shear_weight();
           const double d = std::sqrt(U[0] * U[0] + r2 * U[1] * U[1]);
-          if (d > 0.) {
+          if (law_.adds_openings()) { // each direction by itself
+            row.cohesive_normal = law_.traction(0.);
+            row.cohesive_tangential =
+                law_.traction(0.) * std::sqrt(r2) * sign(U[1]);
+          } else if (d > 0.) {
             row.cohesive_normal = law_.traction(0.) * U[0] / d;
             row.cohesive_tangential = law_.traction(0.) * r2 * U[1] / d;
           }

@@ -1,5 +1,7 @@
 #include "drive_point.h"
 
+#include "core/bracketed_root.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -49,6 +51,17 @@ namespace nsfd
                    r = a.opening * a.opening + r2 * a.slip * a.slip - d * d;
       return (std::sqrt(std::max(0., q * q - p * r)) - q) / p;
     }
+
+    /** The same where @p opening is a sum: convex along the way. */
+    template <typename Opening>
+    double crossing_of_sum(const PathPoint &a, const PathPoint &b,
+                           const Opening &opening, const double d)
+    {
+      const auto excess = [&](const double share) {
+        return opening(between(a, b, share)) - d;
+      };
+      return bracketed_root(excess, 0., 1., excess(0.), excess(1.));
+    }
   } // namespace
 
   std::vector<PathPoint> with_kinks(const std::vector<PathPoint> &points,
@@ -56,7 +69,10 @@ namespace nsfd
   {
     const std::vector<double> remarkable = remarkable_openings(law);
     const double r2 = law.shear_weight();
-    const auto opening = [r2](const PathPoint &point) {
+    const bool adds = law.adds_openings();
+    const auto opening = [r2, adds](const PathPoint &point) {
+      if (adds)
+        return point.at.opening + std::sqrt(r2) * std::abs(point.at.slip);
       return std::sqrt(point.at.opening * point.at.opening +
                        r2 * point.at.slip * point.at.slip);
     };
@@ -66,7 +82,9 @@ namespace nsfd
       const PathPoint &a = points[i - 1], &b = points[i];
       for (const double d : remarkable)
         if (reached < d * (1. - 1e-12) && opening(b) > d * (1. + 1e-12))
-          result.push_back(between(a, b, crossing(a.at, b.at, r2, d)));
+          result.push_back(between(a, b,
+                                   adds ? crossing_of_sum(a, b, opening, d)
+                                        : crossing(a.at, b.at, r2, d)));
       result.push_back(b);
       reached = std::max(reached, opening(b));
     }

@@ -84,7 +84,7 @@ namespace nsfd
       }
       const auto law = read_cohesive_law(reader, curve.law_name);
       const double friction = read_friction(reader);
-      const double exponent = read_friction_exponent(reader);
+      const double exponent = read_friction_exponent(reader, law.get());
       const bool plateau = read_plateau(reader, law.get(), curve.law_name);
       reader.refuse({"where", "restitution", "broken", "intact faces",
                      "strength scatter", "seed"},

@@ -34,7 +34,8 @@ namespace nsfd
         const Cell other = cell->neighbor(face_no);
         const auto face = cell->face(face_no);
         for (const InterfaceInput &block : input_.interfaces)
-          if (groups_.holds_interior_face(
+          if (block.obstacle < 0 &&
+              groups_.holds_interior_face(
                   block.where, face->center(), material(cell), material(other),
                   {{cell->material_id(), other->material_id()}},
                   face->manifold_id()))

@@ -63,6 +63,14 @@ namespace nsfd
   }
 
   template <int dim>
+  double PointDamage<dim>::mean_traction(const Reach &end) const
+  {
+    if (rule_ == CohesionRule::exact)
+      return law_.mean_traction({reach(old_), history_}, end.opening);
+    return law_.traction(std::max(history_.opening, end.opening));
+  }
+
+  template <int dim>
   Dissipation PointDamage<dim>::dissipation(const double *u) const
   {
     const LawState start{JumpSize::of<dim>(old_), history_};

@@ -35,6 +35,18 @@ namespace nsfd
     /** The traction does not fall to zero with the opening: form (5). */
     bool plateau() const { return interaction_.plateau; }
 
+    /** CohesiveLaw::adds_openings(): no secants, see mean_traction(). */
+    bool adds() const { return interaction_.law->adds_openings(); }
+
+    /** Of added openings, for a step that ends at @p end; in Pa. */
+    double mean_traction(const Reach &end) const;
+
+    /** r of the slip in the opening. */
+    double slip_weight() const { return std::sqrt(interaction_.shear_weight); }
+
+    /** The jump at the start of the way that the rule sees; dim numbers. */
+    const double *start() const { return old_; }
+
     /** The secants of the rule for a step that ends at @p end. */
     Secant secant(const Reach &end) const;
 
@@ -57,6 +69,8 @@ namespace nsfd
       return {{law.elastic_limit() / l, law.peak_opening() / l,
                law.final_opening() / l}};
     }
+
+    double final_opening() const { return kinks().back(); }
 
     /** The traction drops to 0 at the end. */
     bool drops() const

@@ -29,36 +29,6 @@ namespace nsfd::local
       const double f_before = excess(0.), f_after = excess(1.);
       excess(bracketed_root(excess, 0., 1., f_before, f_after));
     }
-
-    /**
-     * The root of @p excess next to @p start in [low, high], where it falls
-     * from positive to negative; the upper end may have to go further. A sign
-     * change between two @p kinks of the law comes before one further on.
-     */
-    template <typename Function>
-    double adjacent_root(const Function &excess, double low, double high,
-                         const double start,
-                         const std::array<double, 3> &kinks = {})
-    {
-      double f_low = excess(low), f_high = excess(high);
-      // a spring that is crossed (u and u' on both sides) may push further
-      for (unsigned int k = 0; k < 60 && f_high > 0.; ++k)
-        f_high = excess(high *= 2.);
-      if (f_low <= 0.)
-        return low;
-      const auto split = [&](const double x) {
-        const double f = excess(x);
-        (f > 0. ? low : high) = x;
-        (f > 0. ? f_low : f_high) = f;
-      };
-      if (start > low && start < high)
-        split(start);
-      for (const double kink : kinks)
-        if (kink > low && kink < high)
-          split(kink);
-      return f_high >= 0. ? high
-                          : bracketed_root(excess, low, high, f_low, f_high);
-    }
   } // namespace
 
   template <int dim>

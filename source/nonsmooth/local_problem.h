@@ -6,6 +6,7 @@
 #include "cohesive_laws/friction_weight.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace nsfd::local
@@ -225,6 +226,36 @@ namespace nsfd::local
   };
 
   /**
+   * The root of @p excess next to @p start in [low, high], where it falls
+   * from positive to negative; the upper end may have to go further. A sign
+   * change between two @p kinks of the law comes before one further on.
+   */
+  template <typename Function>
+  double adjacent_root(const Function &excess, double low, double high,
+                       const double start,
+                       const std::array<double, 3> &kinks = {})
+  {
+    double f_low = excess(low), f_high = excess(high);
+    // a spring that is crossed (u and u' on both sides) may push further
+    for (unsigned int k = 0; k < 60 && f_high > 0.; ++k)
+      f_high = excess(high *= 2.);
+    if (f_low <= 0.)
+      return low;
+    const auto split = [&](const double x) {
+      const double f = excess(x);
+      (f > 0. ? low : high) = x;
+      (f > 0. ? f_low : f_high) = f;
+    };
+    if (start > low && start < high)
+      split(start);
+    for (const double kink : kinks)
+      if (kink > low && kink < high)
+        split(kink);
+    return f_high >= 0. ? high
+                        : bracketed_root(excess, low, high, f_low, f_high);
+  }
+
+  /**
    * A point that was beyond the end of its law in this solve stays there if it
    * can: where the traction drops at the end of the law, an end beyond it may
    * be the only one of the whole step, while the local problem has another one
@@ -258,4 +289,9 @@ namespace nsfd::local
   template <int dim>
   void solve_mixed_damage(const PointDamage<dim> &damage, const Reach &high,
                           const Reach &start, LocalProblem<dim> &local);
+
+  /** The sum of opening and slip: each has a traction of its own. */
+  template <int dim>
+  void solve_added(const PointDamage<dim> &damage, const Reach &start,
+                   LocalProblem<dim> &local);
 } // namespace nsfd::local

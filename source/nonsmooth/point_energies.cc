@@ -37,6 +37,39 @@ namespace nsfd
                                 spring.slope * velocity[c]);
     }
 
+    /** Of added openings. */
+    template <int dim>
+    void set_added_tractions(const OneStepProblem<dim> &problem,
+                             const std::size_t i,
+                             const PointDamage<dim> &damage,
+                             const std::array<double, dim> &velocity,
+                             PointEnergies<dim> &result)
+    {
+      const bool exact = problem.rule == CohesionRule::exact,
+                 at_jump = problem.rule == CohesionRule::end_velocity;
+      const double *start = damage.start();
+      double jump[dim], end[dim], from = 0., to = 0.;
+      for (unsigned int c = 0; c < dim; ++c) {
+        jump[c] = problem.jump_free[i * dim + c] +
+                  problem.time_step * problem.theta * velocity[c];
+        end[c] = added_end(at_jump ? start[c] : problem.jump_free[i * dim + c],
+                           velocity_slope<dim>(problem) * velocity[c]);
+        if (c > 0) {
+          from += square(start[c]);
+          to += square(end[c]);
+        }
+      }
+      const double m = damage.mean_traction(damage.reach(jump));
+      result.cohesive_traction[0] =
+          added_normal_traction(m, exact ? start[0] : 0., end[0]);
+      // where a step ends at no slip, the quotient is that of its way
+      const double share = exact || to == 0. ? 1. : 0.;
+      const double size = share * std::sqrt(from) + std::sqrt(to);
+      for (unsigned int c = 1; c < dim && size > 0.; ++c)
+        result.cohesive_traction[c] =
+            m * damage.slip_weight() * (share * start[c] + end[c]) / size;
+    }
+
     template <int dim>
     double elastic_energy(const Interaction &interaction, const double *u)
     {
@@ -105,11 +138,14 @@ namespace nsfd
 
     const PointDamage<dim> damage(problem, i);
     const Reach end = damage.reach(jump);
-    set_tractions<dim>(problem, i,
-                       problem.rule == CohesionRule::exact && !frozen.held
-                           ? damage.secant(end)
-                           : frozen.secant,
-                       velocity, result);
+    if (damage.adds())
+      set_added_tractions<dim>(problem, i, damage, velocity, result);
+    else
+      set_tractions<dim>(problem, i,
+                         problem.rule == CohesionRule::exact && !frozen.held
+                             ? damage.secant(end)
+                             : frozen.secant,
+                         velocity, result);
     result.history = damage.history_after(end);
     result.beta = damage.beta(result.history);
     result.stored += damage.stored(result.history, jump);

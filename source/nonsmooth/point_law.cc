@@ -181,6 +181,13 @@ namespace nsfd
           solve_held<dim>(local, majorant_normal, majorant_tangential);
       if (stays_rigid<dim>(problem, i, held.impulse))
         return held;
+      if (damage.adds()) {
+        solve_added<dim>(damage, start, here);
+        if (solution.reach.opening == 0.)
+          return held;
+        solution.damages = true;
+        return finish(true);
+      }
       // opens: friction alone may still hold it, or its kappa
       here.solve(Secant(), [&] { return damage.beta({}); });
       const double high = solution.reach.opening;
@@ -192,6 +199,11 @@ namespace nsfd
         return held;
       solve_damage<dim>(damage, low, high, start.opening, here);
       solution.damages = true;
+      return finish(true);
+    }
+    if (damage.adds()) {
+      solve_added<dim>(damage, start, here);
+      solution.damages = damage.grows(solution.reach);
       return finish(true);
     }
     if (!damage.plateau()) {

@@ -196,7 +196,7 @@ namespace nsfd
   double sliding_speed(const OneStepProblem<dim> &problem, std::size_t point,
                        const std::array<double, dim> &velocity);
 
-  /** Effective opening sqrt(<u_N>_+^2 + r^2 |u_T|^2). */
+  /** Effective opening sqrt(<u_N>_+^2 + r^2 |u_T|^2), or the sum of both. */
   template <int dim>
   double effective_opening(const Interaction &interaction, const double *jump);
 

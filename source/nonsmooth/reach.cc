@@ -22,6 +22,8 @@ namespace nsfd
     double slip = 0.;
     for (unsigned int c = 1; c < dim; ++c)
       slip += jump[c] * jump[c];
+    if (interaction.law && interaction.law->adds_openings())
+      return positive(jump[0]) + std::sqrt(interaction.shear_weight * slip);
     return std::sqrt(square(positive(jump[0])) +
                      interaction.shear_weight * slip);
   }

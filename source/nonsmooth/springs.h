@@ -121,6 +121,28 @@ namespace nsfd::springs
     }
   };
 
+  /** x + dx, and 0 where only the round-off of the two is left. */
+  inline double added_end(const double x, const double dx)
+  {
+    const double sum = x + dx;
+    return std::abs(sum) <= 1e-15 * std::abs(x) ? 0. : sum;
+  }
+
+  /**
+   * Normal traction of added openings over a step from @p start to @p end, with
+   * the mean traction @p m: the quotient of m <u_N>_+. What is closed all the
+   * time is held by the whole of it.
+   */
+  inline double added_normal_traction(const double m, const double start,
+                                      const double end)
+  {
+    if (start >= 0. && end >= 0.)
+      return m;
+    return start <= 0. && end <= 0.
+               ? 0.
+               : m * (positive(end) - positive(start)) / (end - start);
+  }
+
   /**
    * The spring, and next to it a viscous traction while the point opens: with
    * v = eta <U_theta>_+ = c <U - U_0>_+, c = eta theta and U_0 = -U_k

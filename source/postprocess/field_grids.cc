@@ -2,6 +2,7 @@
 
 #include "bodies/cell_stresses.h"
 #include "discretization/cells.h"
+#include "discretization/obstacle_of_point.h"
 #include "nsfd/scene/scene_input.h"
 
 #include "discretization/cell_sampler.h"
@@ -180,11 +181,12 @@ namespace nsfd
           for (unsigned int c = 0; c < dim; ++c)
             traction[c] += state_.pressure[i] * frame[c];
         const PointOrigin origin = discretization_.origins()[i];
-        return Values{{state_.beta[i], u[0], jump[0], jump[1], jump[2],
-                       traction[0], traction[1], traction[2], state_.slip[i],
-                       state_.contact[i] ? 1. : 0., double(state_.kind[i]),
-                       double(origin.block),
-                       origin.kind == PointOrigin::Kind::obstacle ? 1. : 0.}};
+        return Values{
+            {state_.beta[i], u[0], jump[0], jump[1], jump[2], traction[0],
+             traction[1], traction[2], state_.slip[i],
+             state_.contact[i] ? 1. : 0., double(state_.kind[i]),
+             double(origin.block),
+             obstacle_of(discretization_.input(), origin) >= 0 ? 1. : 0.}};
       }
 
       /** Of a triangle as a whole, with the kind of its weakest point. */

@@ -106,7 +106,7 @@ namespace nsfd
     std::vector<Place> result;
     if (surface.kind != NamedSurface::Kind::contact)
       for (std::size_t i = 0; i < points_.size(); ++i) {
-        if (!is_at(points_[i].origin, surface))
+        if (!is_at(input_, points_[i].origin, surface))
           continue;
         const PointState state = at(i);
         Place &place = result.emplace_back();

@@ -1,6 +1,7 @@
 #include "viewed_mesh.h"
 
 #include "discretization/cells.h"
+#include "discretization/obstacle_of_point.h"
 #include "mesh/owned_cells.h"
 
 #include "discretization/cell_geometry.h"
@@ -14,12 +15,13 @@ namespace nsfd
 {
   using namespace dealii;
 
-  bool is_at(const PointOrigin origin, const NamedSurface &surface)
+  bool is_at(const SceneInput &input, const PointOrigin origin,
+             const NamedSurface &surface)
   {
+    if (surface.kind == NamedSurface::Kind::obstacle)
+      return obstacle_of(input, origin) == int(surface.block);
     return origin.block == surface.block &&
-           origin.kind == (surface.kind == NamedSurface::Kind::obstacle
-                               ? PointOrigin::Kind::obstacle
-                               : PointOrigin::Kind::interface);
+           origin.kind == PointOrigin::Kind::interface;
   }
 
   template <int dim>
@@ -93,7 +95,7 @@ namespace nsfd
     const Bodies &bodies = discretization_.bodies();
     const auto &origins = discretization_.origins();
     const auto is_there = [&](const unsigned int point) {
-      return point < origins.size() && is_at(origins[point], surface);
+      return point < origins.size() && is_at(input_, origins[point], surface);
     };
     for (unsigned int b = 0; b < bodies.size(); ++b)
       for (std::size_t s = bodies.first_slot[b]; s < bodies.first_slot[b + 1];

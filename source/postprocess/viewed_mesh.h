@@ -15,7 +15,8 @@
 namespace nsfd
 {
   /** Whether a point lies on an interface or an obstacle. */
-  bool is_at(PointOrigin origin, const NamedSurface &surface);
+  bool is_at(const SceneInput &input, PointOrigin origin,
+             const NamedSurface &surface);
 
   /** Cells and faces of this rank by where they are, for observables. */
   template <int dim>

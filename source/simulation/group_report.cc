@@ -27,7 +27,9 @@ namespace nsfd
                           is_about_cells});
       };
       add("Material", input.materials, true);
-      add("Interface", input.interfaces, false);
+      for (const auto &block : input.interfaces)
+        if (block.obstacle < 0) // those are named by their obstacles
+          uses.push_back({block.section(), &block.where, false});
       add("Boundary", input.boundaries, false);
       add("Obstacle", input.obstacles, false);
       return uses;

@@ -45,7 +45,7 @@ namespace nsfd
       std::vector<std::string> warnings;
       for (std::size_t b = 0; b < n_blocks; ++b) {
         const InterfaceInput &block = input.interfaces[b];
-        const std::string name = "Interface: " + block.name;
+        const std::string name = block.section();
         if (!any_faces && block.where.kind == Where::Kind::all)
           continue;
         if (!communicator.any(has_faces[b]))

@@ -67,7 +67,8 @@ namespace nsfd
     for (const auto &block : input.interfaces) {
       const bool joined =
           block.law_name == "rigid" || block.law_name == "bonded";
-      parts.emplace_back("interface " + block.name,
+      parts.emplace_back((block.obstacle < 0 ? "interface " : "cohesion on ") +
+                             block.name,
                          joined ? "joined" : block.law_name);
       if (block.strength_scatter.is_random() ||
           block.toughness_scatter.is_random())

@@ -2,6 +2,7 @@
 
 #include "discretization/body_shape.h"
 #include "discretization/cells.h"
+#include "discretization/obstacle_of_point.h"
 
 #include "nsfd/scene/scene_input.h"
 #include "state/state.h"
@@ -341,7 +342,7 @@ namespace nsfd
     for (std::size_t i = 0; i < discretization.points().n_points; ++i) {
       const PointOrigin &origin = discretization.origins()[i];
       const double approach = -state.relative_velocity[i * dim];
-      if (origin.kind == PointOrigin::Kind::obstacle)
+      if (obstacle_of(input, origin) >= 0)
         largest = std::max(largest, approach);
       else if (origin.kind == PointOrigin::Kind::interface &&
                input.interfaces[origin.block].law_name != "rigid")

@@ -14,6 +14,8 @@ namespace nsfd
     void check_smooth(SectionReader &reader, const SceneInput &scene)
     {
       for (const InterfaceInput &interface : scene.interfaces) {
+        if (interface.obstacle >= 0)
+          continue; // the obstacle is named below
         const bool smooth =
             interface.law_name == "rigid" || interface.law_name == "bonded" ||
             (interface.law_name == "elastic" &&

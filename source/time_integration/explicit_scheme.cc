@@ -37,12 +37,16 @@ namespace nsfd
         if (material.rigid)
           refuse(fmt::format("rigid bodies yet, and material `{}` is rigid",
                              material.name));
+      for (const ObstacleInput &obstacle : scene.obstacles)
+        if (obstacle.cohesion >= 0)
+          refuse(fmt::format("cohesion on obstacles yet, and bodies stick to "
+                             "Obstacle: {}",
+                             obstacle.name));
       for (const InterfaceInput &block : scene.interfaces)
         if (block.law && !block.law->extrinsic() &&
             block.law->elastic_limit() == 0.)
-          refuse(fmt::format("law without a straight part, and {} of "
-                             "Interface: {} is one",
-                             block.law_name, block.name));
+          refuse(fmt::format("law without a straight part, and {} of {} is one",
+                             block.law_name, block.section()));
     }
 
     /** What explicit steps of small motions do not know yet. */
@@ -135,7 +139,7 @@ namespace nsfd
       for (InterfaceInput &interface : scene.interfaces) {
         refuse_lift(reader, interface);
         // what holds two cells together are their common nodes
-        if (interface.intact == IntactFaces::rigid)
+        if (interface.intact == IntactFaces::rigid && interface.obstacle < 0)
           interface.intact = IntactFaces::bonded;
       }
       for (const ObstacleInput &obstacle : scene.obstacles)

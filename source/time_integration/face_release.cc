@@ -24,7 +24,8 @@ namespace nsfd
   FaceRelease<dim>::FaceRelease(const Discretization<dim> &discretization,
                                 const OneStepProblem<dim> &all,
                                 const HangingNodes<dim> &hanging)
-      : discretization_(discretization), sites_(discretization.points())
+      : discretization_(discretization), all_(all),
+        sites_(discretization.points())
   {
     const auto &points = discretization.points();
     const auto &input = discretization.input();
@@ -38,9 +39,9 @@ namespace nsfd
     for (std::size_t f = 0; f < points.faces.size(); ++f) {
       const auto &face = points.faces[f];
       const PointOrigin &origin = discretization.origins()[face.first];
-      if (origin.kind != PointOrigin::Kind::interface ||
+      if (origin.kind != PointOrigin::Kind::interface || face.boundary ||
           !input.interfaces[origin.block].law)
-        continue;
+        continue; // an obstacle holds nodes by rows of their own
       const auto &block = input.interfaces[origin.block];
       // rigid cells have no stress: the mean is half of what the other one has
       double sides = 2.;
@@ -117,7 +118,7 @@ namespace nsfd
     const auto &points = discretization_.points();
     const int first = first_site_[points.face_of[point]];
     if (first < 0)
-      return {};
+      return {all_.strength_factor[point], all_.opening_factor[point]};
     const unsigned int within =
         point - points.faces[points.face_of[point]].first;
     return factors_[std::size_t(first) +

@@ -34,7 +34,7 @@ namespace nsfd
     void start(std::vector<std::uint8_t> intact);
     const std::vector<std::uint8_t> &intact() const { return intact_; }
 
-    /** Of the face of a point, where there is one that may be released. */
+    /** Of the face of a point that may be released, else of the point. */
     typename LeapfrogPoints<dim>::Factors factors(unsigned int point) const;
 
     /**
@@ -78,6 +78,7 @@ namespace nsfd
     void let_go(std::size_t site, std::vector<unsigned int> &released);
 
     const Discretization<dim> &discretization_;
+    const OneStepProblem<dim> &all_;
     StrengthSites<dim> sites_;
     /// of sites: traction over the mean that is computed, 2 beside a rigid
     /// cell; empty: 1

@@ -1,6 +1,7 @@
 #include "initial_state.h"
 
 #include "discretization/cells.h"
+#include "discretization/obstacle_of_point.h"
 #include "state/point_fields.h"
 
 #include "bond_release.h"
@@ -10,11 +11,15 @@
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace nsfd
 {
   namespace
   {
+    /// gap over the extent of the mesh up to which a body sticks to an obstacle
+    constexpr double touching = 1e-9;
+
     using Components = std::array<Expression, 3>;
 
     /** One of the initial fields of the materials, as unknowns. */
@@ -42,11 +47,12 @@ namespace nsfd
 
     template <int dim>
     void set_interface_point(const InterfaceInput &block,
-                             const dealii::Point<dim> &x,
+                             const dealii::Point<dim> &x, const double gap,
                              const OneStepProblem<dim> &problem,
                              const std::size_t i, State &state)
     {
-      if (block.law_name == "contact" ||
+      state.jump[i * dim] += gap;
+      if (block.law_name == "contact" || gap != 0. ||
           (block.has_broken && block.broken.at(x, 0.) != 0.)) {
         state.kind[i] = PointKind::free;
         state.beta[i] = 0.;
@@ -117,15 +123,19 @@ namespace nsfd
                      const Discretization<dim> &discretization,
                      const std::size_t i)
   {
-    const PointOrigin origin = discretization.origins()[i];
-    if (origin.kind != PointOrigin::Kind::obstacle)
+    const int obstacle = obstacle_of(input, discretization.origins()[i]);
+    if (obstacle < 0)
       return 0.;
     const auto &points = discretization.points();
     double gap = 0.;
     for (unsigned int c = 0; c < dim; ++c)
       gap += points.axes(i)[c] * (points.position[i * dim + c] -
-                                  input.obstacles[origin.block].point[c]);
-    return gap;
+                                  input.obstacles[obstacle].point[c]);
+    // what a body sticks to touches it: round-off of its place is none
+    const bool sticks =
+        discretization.origins()[i].kind == PointOrigin::Kind::interface;
+    return sticks && std::abs(gap) <= touching * discretization.extent() ? 0.
+                                                                         : gap;
   }
 
   template <int dim>
@@ -228,7 +238,8 @@ namespace nsfd
       switch (origin.kind) {
       case PointOrigin::Kind::interface:
         set_interface_point(input.interfaces[origin.block],
-                            position_of(discretization.points(), i), problem, i,
+                            position_of(discretization.points(), i),
+                            initial_gap(input, discretization, i), problem, i,
                             state);
         break;
       case PointOrigin::Kind::obstacle:

@@ -41,7 +41,7 @@ namespace nsfd
     const auto &origins = discretization.origins();
     std::vector<std::uint8_t> intact(origins.size(), 0);
     for (const auto &face : discretization.points().faces) {
-      if (face.count == 0 ||
+      if (face.count == 0 || face.boundary ||
           origins[face.first].kind != PointOrigin::Kind::interface)
         continue;
       const bool held = is_held(discretization, face);

@@ -13,7 +13,7 @@ namespace nsfd
     {
       switch (origin.kind) {
       case PointOrigin::Kind::interface:
-        return "Interface: " + input.interfaces[origin.block].name;
+        return input.interfaces[origin.block].section();
       case PointOrigin::Kind::motion:
         return "Boundary: " + input.boundaries[origin.block].name;
       case PointOrigin::Kind::obstacle:

@@ -132,6 +132,17 @@ namespace nsfd
     /** max |T'| over the softening branch, in Pa/m; infinity at a jump. */
     virtual double steepest_softening() const = 0;
 
+    /**
+     * The opening is the sum d = <u_N>_+ + r |u_T|, and each direction has a
+     * traction of its own, kept while the point closes:
+     *
+     *   R = T(d_m) (n + r u_T / |u_T|),
+     *
+     * set-valued where u_N = 0 or u_T = 0. Of an extrinsic law alone, with the
+     * stored energy T(d_m) d; stiffness_ratio() is r^2.
+     */
+    virtual bool adds_openings() const { return false; }
+
     /** The law with two damage scalars that this is, or null. */
     virtual const MixedLaw *mixed() const { return nullptr; }
 

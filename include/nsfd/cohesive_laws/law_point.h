@@ -94,7 +94,7 @@ namespace nsfd
      * @p strength_factor a and @p opening_factor l make a T(l d) of the law, l
      * the first over the factor of the toughness. With @p plateau the traction
      * does not fall while the point closes: form (5) of [AM06], for extrinsic
-     * laws. @p law must outlive the point.
+     * laws, and all that add openings. @p law must outlive the point.
      */
     explicit LawPoint(const CohesiveLaw &law, const double strength_factor = 1.,
                       const double opening_factor = 1.,
@@ -110,7 +110,8 @@ namespace nsfd
              const double stiffness_ratio, const double shear_weight)
         : law_(law), mixed_(law.mixed()), a_(strength_factor),
           l_(opening_factor), stiffness_ratio_(stiffness_ratio),
-          shear_weight_(shear_weight), plateau_(plateau)
+          shear_weight_(shear_weight), adds_(law.adds_openings()),
+          plateau_(plateau || adds_)
     {
     }
 
@@ -122,6 +123,8 @@ namespace nsfd
     {
       if (mixed_)
         return {jump.opening, std::sqrt(jump.slip_square)};
+      if (adds_)
+        return {jump.opening + std::sqrt(shear_weight_ * jump.slip_square), 0.};
       return {std::sqrt(jump.opening * jump.opening +
                         shear_weight_ * jump.slip_square),
               0.};
@@ -182,6 +185,13 @@ namespace nsfd
     Secant mean_secant(const Reached &from, const Reached &to) const;
 
     /**
+     * The mean traction on a plateau and along the envelope beyond it, of a way
+     * from @p from to the opening @p opening: its product with their
+     * difference is what is stored and dissipated.
+     */
+    double mean_traction(const Reached &from, double opening) const;
+
+    /**
      * Largest traction in pure opening of a point that was never open; with a
      * plateau, what the largest opening has left of it.
      */
@@ -202,6 +212,7 @@ namespace nsfd
      * shear over that in opening; 1/s^2 = 1/r^2 with a potential. Two scalars:
      * the surface that the law itself has, found by a search over the envelope
      * in the direction of the traction, some thousand evaluations of secants.
+     * Added openings: max(<t_N>_+, |t_T| / r), each direction by itself.
      * Compression counts as none but for friction: @p friction, mu kappa(beta),
      * carries @p friction times the pressure of the shear. A law whose damage
      * takes time is taken at rest.
@@ -217,11 +228,11 @@ namespace nsfd
         return reduced_traction(normal, std::sqrt(square), friction);
       }
       const double pull = std::max(0., normal), weight = strength_weight();
-      double square = pull * pull;
+      double square = adds_ ? 0. : pull * pull;
       if (weight > 0.)
         for (unsigned int c = 0; c + 1 < dim; ++c)
           square += shear[c] * shear[c] / weight;
-      return std::sqrt(square);
+      return adds_ ? std::max(pull, std::sqrt(square)) : std::sqrt(square);
     }
 
   private:
@@ -229,6 +240,7 @@ namespace nsfd
     const MixedLaw *mixed_;
     double a_, l_;
     double stiffness_ratio_, shear_weight_;
+    bool adds_; ///< CohesiveLaw::adds_openings()
     bool plateau_;
 
     struct Growth {
@@ -243,7 +255,6 @@ namespace nsfd
     }
     double released(double from, double to) const;
     double scalar_secant(const Reached &from, const Reached &to) const;
-    double plateau_secant(const Reached &from, double opening) const;
     Secant mixed_secant(const Reached &from, const Reached &to) const;
     double lost_energy(const LawState &from, const LawState &to,
                        double damage) const;

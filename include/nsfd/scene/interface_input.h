@@ -23,6 +23,8 @@ namespace nsfd
 
   struct InterfaceInput {
     std::string name;
+    /// the other side of its faces, which are boundary faces; -1: a cell
+    int obstacle = -1;
     Where where;
     /// "rigid", "bonded", "elastic", "contact" or the name of a cohesive law
     std::string law_name;
@@ -48,6 +50,11 @@ namespace nsfd
     /// Pa, of x, y, z, t: on the crack faces of points with beta <= threshold
     std::optional<Expression> crack_pressure;
     double pressure_threshold = 0.;
+    /** "Interface: NAME", or of the obstacle. */
+    std::string section() const
+    {
+      return (obstacle < 0 ? "Interface: " : "Obstacle: ") + name;
+    }
     /** Its two sides may part. */
     bool may_open() const { return law || law_name == "contact"; }
     /// beta up to which a point is broken: above 0 for laws with a tail

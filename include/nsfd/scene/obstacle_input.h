@@ -28,6 +28,8 @@ namespace nsfd
     std::array<std::optional<Expression>, 3> velocity;
     double friction = 0., restitution = 0.;
     SlidingInput sliding;
+    /// the block of SceneInput::interfaces with its law; -1: none
+    int cohesion = -1;
 
     bool moves() const { return velocity[0] || velocity[1] || velocity[2]; }
   };

@@ -33,7 +33,10 @@ namespace nsfd::observables
       };
       add(scene.boundaries, NamedSurface::Kind::boundary);
       add(scene.obstacles, NamedSurface::Kind::obstacle);
-      add(scene.interfaces, NamedSurface::Kind::interface);
+      for (unsigned int b = 0; b < scene.interfaces.size(); ++b)
+        if (scene.interfaces[b].obstacle < 0)
+          all.push_back(
+              {NamedSurface::Kind::interface, b, scene.interfaces[b].name});
       add(scene.contacts, NamedSurface::Kind::contact);
       return all;
     }

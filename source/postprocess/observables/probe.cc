@@ -25,6 +25,10 @@ namespace nsfd
                                          dimension_, ""));
       if (has_faces)
         surface_ = read_surface(reader, scene, "");
+      if (surface_ && surface_->kind == NamedSurface::Kind::interface)
+        interface_ = int(surface_->block);
+      else if (surface_ && surface_->kind == NamedSurface::Kind::obstacle)
+        interface_ = scene.obstacles[surface_->block].cohesion;
       if (surface_ && surface_->kind == NamedSurface::Kind::contact)
         reader.error("on", full_name(*surface_) + " has no faces of its own",
                      "name a Boundary, Obstacle or Interface block");
@@ -57,7 +61,7 @@ namespace nsfd
       for (const char *name : {"xx", "yy", "zz", "xy", "xz", "yz"})
         if (dimension_ == 3 || std::string(name) == "zz" || name[1] != 'z')
           columns.push_back({std::string("stress_") + name, "Pa"});
-      if (is_interface()) {
+      if (interface_ >= 0) {
         add_vector(columns, "jump", "m", dimension_);
         add_vector(columns, "traction", "Pa", dimension_);
       }
@@ -73,7 +77,7 @@ namespace nsfd
       add_vector(values, means.velocity, dimension_);
       values.insert(values.end(), means.stress.begin(),
                     means.stress.begin() + (dimension_ == 2 ? 4 : 6));
-      if (is_interface())
+      if (interface_ >= 0)
         add_jump(view, values);
       return values;
     }
@@ -89,18 +93,13 @@ namespace nsfd
     }
 
   private:
-    bool is_interface() const
-    {
-      return surface_ && surface_->kind == NamedSurface::Kind::interface;
-    }
-
     void add_jump(const RunView &view, std::vector<double> &values) const
     {
       std::vector<std::size_t> points;
       for (std::size_t i = 0; i < view.points().size(); ++i) {
         const PointOrigin origin = view.points()[i].origin;
         if (origin.kind == PointOrigin::Kind::interface &&
-            origin.block == surface_->block)
+            int(origin.block) == interface_)
           points.push_back(i);
       }
       const std::size_t n = points.size();
@@ -122,6 +121,7 @@ namespace nsfd
     const unsigned int dimension_;
     Vector place_{};
     std::optional<NamedSurface> surface_;
+    int interface_ = -1; ///< the block that has a law or contact; -1: none
   };
 
   NSFD_REGISTER(ObservableRegistry, Probe, "probe",
