@@ -109,7 +109,8 @@ namespace nsfd
 
     void read_damage_start(SectionReader &reader, InterfaceInput &input)
     {
-      input.friction_exponent = read_friction_exponent(reader);
+      input.friction_exponent = read_friction_exponent(
+          reader, input.law ? input.law->friction_exponent() : 1.);
       input.broken = read_initial_expression(
           reader, "broken", "false", units::none,
           "true, or an expression: open at t = 0 where it is not 0");
@@ -305,8 +306,10 @@ namespace nsfd
                        "dilatancy", "dilatancy saturation", "wear coefficient"},
                       reason);
         reader.refuse(cohesive_entries, reason);
+        refuse_initial_stress(reader, reason);
         return input;
       }
+      input.initial_stress = read_initial_traction(reader, scene);
       if (input.law_name == "contact") {
         read_contact(reader, input);
         read_crack_pressure(reader, input);
@@ -398,10 +401,10 @@ namespace nsfd
         "k in 1/Pa of Archard's law: the gap grows by k p_N |U_T|");
   }
 
-  double read_friction_exponent(SectionReader &reader)
+  double read_friction_exponent(SectionReader &reader, const double otherwise)
   {
-    return reader.number("friction exponent", "1", units::none,
-                         Range::non_negative(),
+    return reader.number("friction exponent", fmt::format("{:g}", otherwise),
+                         units::none, Range::non_negative(),
                          "s of kappa = (1 - beta)^s; 0: full friction always");
   }
 

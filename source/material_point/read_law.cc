@@ -84,7 +84,8 @@ namespace nsfd
       }
       const auto law = read_cohesive_law(reader, curve.law_name);
       const double friction = read_friction(reader);
-      const double exponent = read_friction_exponent(reader);
+      const double exponent =
+          read_friction_exponent(reader, law ? law->friction_exponent() : 1.);
       const bool plateau = read_plateau(reader, law.get(), curve.law_name);
       reader.refuse({"where", "restitution", "broken", "intact faces",
                      "strength scatter", "seed"},
