@@ -118,8 +118,8 @@ namespace nsfd
   NSFD_REGISTER(CohesiveLawRegistry, SlipWeakening, "slip-weakening",
                 "Extrinsic, linear slip weakening of a fault: cohesion (mu_s - "
                 "mu_d) sigma_n over D_c, on top of friction mu_d",
-                "static friction = 0.677; friction = 0.525; normal traction = "
-                "120 MPa; slip distance = 0.4 m",
-                "static friction = 0.6; friction = 0.2; normal traction = "
-                "10 MPa; slip distance = 1 mm; opening strength = 1 MPa");
+                "static friction = 0.677; normal traction = 120 MPa; slip "
+                "distance = 0.4 m",
+                "static friction = 0.9; normal traction = 10 MPa; slip "
+                "distance = 1 mm; opening strength = 1 MPa");
 } // namespace nsfd
