@@ -9,10 +9,10 @@ namespace nsfd
   BodyEnergies sum(const Communicator &all,
                    const std::vector<BodyEnergies> &bodies)
   {
-    constexpr std::array<double BodyEnergies::*, 7> lines = {
+    constexpr std::array<double BodyEnergies::*, 8> lines = {
         {&BodyEnergies::kinetic, &BodyEnergies::elastic, &BodyEnergies::of_mass,
          &BodyEnergies::of_strain, &BodyEnergies::work, &BodyEnergies::plastic,
-         &BodyEnergies::viscous}};
+         &BodyEnergies::viscous, &BodyEnergies::absorbed}};
     std::vector<double> terms;
     for (const auto line : lines)
       for (const BodyEnergies &body : bodies)

@@ -12,6 +12,7 @@ namespace nsfd
     double of_mass = 0., of_strain = 0.; ///< what theta > 1/2 takes
     double work = 0.;                    ///< of the loads
     double plastic = 0., viscous = 0.;   ///< what the bodies dissipate
+    double absorbed = 0.;                ///< by their sides
   };
 
   /** Of the bodies of all ranks, whatever their order. Collective. */

@@ -21,8 +21,8 @@ namespace nsfd
     bool is_energy(const std::string &name)
     {
       static const std::set<std::string> columns = {
-          "kinetic", "elastic", "cohesive", "damage",    "friction",
-          "viscous", "plastic", "impact",   "numerical", "work"};
+          "kinetic", "elastic", "cohesive",  "damage", "friction", "viscous",
+          "plastic", "impact",  "numerical", "work",   "absorbed"};
       return columns.count(name) > 0 || starts_with(name, "energy/") ||
              starts_with(name, "dissipated/");
     }

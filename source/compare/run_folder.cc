@@ -163,7 +163,7 @@ namespace nsfd
         see(value);
     for (const char *name :
          {"kinetic", "elastic", "cohesive", "damage", "friction", "viscous",
-          "plastic", "impact", "numerical", "work"})
+          "plastic", "impact", "numerical", "absorbed", "work"})
       if (const auto *values = column(name))
         std::for_each(values->begin(), values->end(), see);
     return largest;

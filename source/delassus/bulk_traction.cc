@@ -2,14 +2,18 @@
 
 #include "body_loops.h"
 
+#include "discretization/initial_stress.h"
+
 #include <algorithm>
 #include <array>
 
 namespace nsfd
 {
   template <int dim>
-  BulkTraction<dim>::BulkTraction(const DelassusOperator<dim> &delassus)
-      : delassus_(delassus), share_(delassus.points().n_points)
+  BulkTraction<dim>::BulkTraction(const DelassusOperator<dim> &delassus,
+                                  const InitialStress<dim> *const initial)
+      : delassus_(delassus), initial_(initial),
+        share_(delassus.points().n_points)
   {
     set_shares();
     side_1_.resize((share_.size() + 1) * dim);
@@ -75,6 +79,18 @@ namespace nsfd
                                    const Where where, double *traction) const
   {
     mean(&BodyClass::traction, displacement, where, traction);
+    if (!initial_)
+      return;
+    const auto add = [&](const std::size_t point) {
+      for (unsigned int c = 0; c < dim; ++c)
+        traction[point * dim + c] += initial_->local_traction(point)[c];
+    };
+    if (where == Where::marked)
+      for (const unsigned int i : marked_points_)
+        add(i);
+    else
+      for (std::size_t i = 0; i < share_.size(); ++i)
+        add(i);
   }
 
   template <int dim>

@@ -7,6 +7,9 @@
 
 namespace nsfd
 {
+  template <int dim>
+  class InitialStress;
+
   /**
    * The mean traction of the bulk on both sides of a point,
    *
@@ -14,7 +17,8 @@ namespace nsfd
    *     omega_1 = Lambda_2 / (Lambda_1 + Lambda_2),  omega_2 = 1 - omega_1,
    *
    * Lambda_b the traction bound of a body (BodyClass). A rigid body has no
-   * traction: the other one gives all of it. In scenes with bonded faces.
+   * traction: the other one gives all of it. With that of an initial stress. In
+   * scenes with bonded faces.
    */
   template <int dim>
   class BulkTraction
@@ -25,8 +29,10 @@ namespace nsfd
       marked ///< at the faces of mark()
     };
 
-    /** No face is marked. Collective. */
-    explicit BulkTraction(const DelassusOperator<dim> &delassus);
+    /** No face is marked; @p initial null: there is no such stress.
+        Collective. */
+    explicit BulkTraction(const DelassusOperator<dim> &delassus,
+                          const InitialStress<dim> *initial = nullptr);
 
     /** By face: what a step asks for. A face of two ranks is marked on both. */
     void mark(const std::vector<char> &faces);
@@ -50,6 +56,7 @@ namespace nsfd
               Where where, double *result) const;
 
     const DelassusOperator<dim> &delassus_;
+    const InitialStress<dim> *initial_;
     std::vector<std::array<double, 2>> share_; ///< omega, per point
     BodyOrder marked_;                         ///< bodies at marked faces
     std::vector<unsigned int> marked_points_;

@@ -309,9 +309,10 @@ namespace nsfd
   {
     const std::size_t n_entries = pattern_.column.size() * size_ * size_;
     const auto &classes = bodies_.classes;
-    const bool damped =
+    // on all ranks: products are collective
+    const bool damped = delassus_.communicator().any(
         std::any_of(classes.begin(), classes.end(),
-                    [](const auto &body) { return body.damping.rows; });
+                    [](const auto &body) { return body.damping.rows; }));
     operators_.step.clear();
     operators_.mass.assign(n_entries, 0.);
     operators_.stiffness.assign(n_entries, 0.);

@@ -50,7 +50,10 @@ namespace nsfd
     bool undeformed = false; ///< of a rigid material, whatever its unknowns
     unsigned int material = 0;
     Block mass, stiffness, trace; ///< stiffness is empty for rigid bodies
-    Block damping;                ///< of viscous materials, else empty
+    /// of viscous materials and, but for explicit steps at nodes, of absorbing
+    /// sides; else empty
+    Block damping;
+    Block absorbing; ///< of damping, the part of the sides; else empty
     /// of deformable bodies: the rigid motions R as columns, R^T mass R = 1
     Block rigid_motions;
     /// of deformable bodies in scenes with bonded faces: the traction on the
@@ -138,6 +141,7 @@ namespace nsfd
       std::array<unsigned long long, 2> cells{}; ///< global cell numbers
       std::array<int, 2> bodies{{-1, -1}};       ///< local, -1: none or remote
       std::array<double, dim> centre{};
+      std::array<unsigned int, 2> materials{}; ///< of the sides with a cell
     };
     std::vector<Face> faces;           ///< owned and shared ones
     std::vector<unsigned int> face_of; ///< per point

@@ -1,5 +1,7 @@
 #include "body_shape.h"
 
+#include "absorbing_sides.h"
+
 #include "interface_quadrature.h"
 
 #include "cell_geometry.h"
@@ -229,6 +231,26 @@ namespace nsfd
       if (input_.has_bonded_faces())
         body.viscous_traction = traction(shape, body, viscosity);
     }
+  }
+
+  template <int dim>
+  void ClassBuilder<dim>::add_absorbing(const unsigned int faces,
+                                        const BodyShape<dim> &shape,
+                                        BodyClass &body) const
+  {
+    if (faces == 0 || body.undeformed)
+      return; // those are refused
+    body.absorbing = Block(body.n_dofs, body.n_dofs);
+    const auto add = [](const Block &block, Block &to) {
+      for (std::size_t k = 0; k < block.values.size(); ++k)
+        to.values[k] += block.values[k];
+    };
+    for (unsigned int f = 0; f < shape.reference.n_faces(); ++f)
+      if (faces >> f & 1u)
+        add(absorbing_block(element_, shape, f), body.absorbing);
+    if (body.damping.rows == 0)
+      body.damping = Block(body.n_dofs, body.n_dofs);
+    add(body.absorbing, body.damping);
   }
 
   template <int dim>

@@ -137,6 +137,10 @@ namespace nsfd
                const std::vector<LocalModuli> &moduli, BodyShape<dim> &shape,
                BodyClass &body) const;
 
+    /** Dashpots on the @p faces (bit f) of a class that is built. */
+    void add_absorbing(unsigned int faces, const BodyShape<dim> &shape,
+                       BodyClass &body) const;
+
     /**
      * Where the moduli of a cell are needed, relative to its corner 0: the
      * positions of its quadrature, then its slots if there are bonded faces, a

@@ -1,5 +1,7 @@
 #include "cells.h"
 
+#include "absorbing_sides.h"
+
 #include "mesh/owned_cells.h"
 
 #include "nsfd/scene/scene_input.h"
@@ -136,7 +138,8 @@ namespace nsfd
   template <int dim>
   Cells<dim>::Cells(const Triangulation<dim> &triangulation,
                     const std::vector<unsigned int> &materials,
-                    const SceneInput &input, const CellSet set)
+                    const SceneInput &input, const CellSet set,
+                    const std::vector<AbsorbingFace> &absorbing)
   {
     const unsigned int degree = input.discretization.degree;
     if (triangulation.all_reference_cells_are_hyper_cube())
@@ -146,7 +149,17 @@ namespace nsfd
     builder_ = std::make_unique<ClassBuilder<dim>>(*element, input);
     const ClassBuilder<dim> &builder = *builder_;
 
-    using Form = std::pair<unsigned int, std::vector<long long>>;
+    auto next_absorbing = absorbing.begin();
+    // bit f: face f of a body absorbs; they come in the order of the bodies
+    const auto absorbing_bits = [&](const std::size_t body) {
+      unsigned int bits = 0;
+      for (; next_absorbing != absorbing.end() && next_absorbing->body == body;
+           ++next_absorbing)
+        bits |= 1u << next_absorbing->face;
+      return input.time.scheme.at_nodes ? 0 : bits;
+    };
+
+    using Form = std::pair<std::array<unsigned int, 2>, std::vector<long long>>;
     using Key = std::tuple<unsigned int, Form, std::vector<double>>;
     std::map<Key, unsigned int> class_by_key;
     std::map<Form, std::vector<Point<dim>>> places; // of graded materials
@@ -191,9 +204,11 @@ namespace nsfd
         continue;
       }
       const RoundedCorners<dim> rounded(own_corners);
-      const unsigned int divided = divided_faces(cell);
-      const Form form =
-          builder.has_no_blocks() ? Form() : Form(divided, rounded.key);
+      const unsigned int divided = divided_faces(cell),
+                         absorbs = absorbing_bits(corners.size() - 1);
+      const Form form = builder.has_no_blocks()
+                            ? Form()
+                            : Form({{divided, absorbs}}, rounded.key);
       std::vector<double> local; // empty where the material is not graded
       std::vector<LocalModuli> moduli;
       if (input.materials[material].graded) {
@@ -208,11 +223,13 @@ namespace nsfd
       const auto [entry, is_new] = class_by_key.emplace(
           Key(material, form, local), unsigned(shapes.size()));
       const unsigned int k = entry->second;
-      if (is_new)
+      if (is_new) {
         builder.build(cell->reference_cell(), rounded.relative, rounded.size,
                       material, divided,
                       moduli.empty() ? constants[material] : moduli,
                       shapes.emplace_back(), bodies.classes.emplace_back());
+        builder.add_absorbing(absorbs, shapes[k], bodies.classes[k]);
+      }
       class_of_material[material] = int(k);
       add(cell, k);
     }

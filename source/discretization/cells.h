@@ -18,6 +18,8 @@ namespace dealii
 
 namespace nsfd
 {
+  struct AbsorbingFace;
+
   /** The cells that a rank looks at: bodies, classes, places and nodes. */
   template <int dim>
   struct Cells {
@@ -25,11 +27,12 @@ namespace nsfd
      * @p materials by active_cell_index. Shapes are rounded to 2^-42 of their
      * size before they are compared and before anything is computed from them.
      * Constants of a graded material that cannot be are replaced by others: see
-     * `graded`.
+     * `graded`. Those of @p absorbing faces have dashpots, but for explicit
+     * steps at nodes.
      */
     Cells(const dealii::Triangulation<dim, dim> &triangulation,
           const std::vector<unsigned int> &materials, const SceneInput &input,
-          CellSet set = CellSet::own);
+          CellSet set, const std::vector<AbsorbingFace> &absorbing);
 
     std::unique_ptr<dealii::FiniteElement<dim, dim>> element;
     Bodies bodies;                      ///< without points

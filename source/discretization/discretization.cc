@@ -94,6 +94,23 @@ namespace nsfd
       }
     }
 
+    template <int dim>
+    void check_absorbing(const std::vector<AbsorbingFace> &faces,
+                         const Cells<dim> &cells, const SceneInput &input,
+                         const Communicator &communicator)
+    {
+      double rigid = -1.;
+      for (const auto &face : faces)
+        if (cells.body_class(face.body).undeformed)
+          rigid = cells.body_class(face.body).material;
+      rigid = communicator.max(rigid);
+      if (rigid >= 0.)
+        throw std::runtime_error(fmt::format(
+            "an absorbing side has cells of the rigid material {}, in which "
+            "there are no waves",
+            input.materials[std::size_t(rigid)].name));
+    }
+
     /** Of all ranks. */
     void share(const Communicator &communicator, MaterialExtremes &all)
     {
@@ -152,15 +169,16 @@ namespace nsfd
       const Communicator &communicator, const Triangulation<dim> &triangulation,
       const MeshGroups<dim> &groups, const std::vector<unsigned int> &materials,
       const SceneInput &input, const CellSet set)
-      : input_(&input),
-        loads_(std::make_unique<Loads<dim>>(triangulation, groups, input, set)),
-        extent_((groups.upper() - groups.lower()).norm())
+      : input_(&input), extent_((groups.upper() - groups.lower()).norm())
   {
+    auto loads =
+        std::make_unique<Loads<dim>>(triangulation, groups, input, set);
     for (unsigned int b = 0; b < input.boundaries.size(); ++b)
       if (is_driven<dim>(input.boundaries[b]))
         driven_.push_back(b);
-    auto cells =
-        std::make_unique<Cells<dim>>(triangulation, materials, input, set);
+    auto cells = std::make_unique<Cells<dim>>(triangulation, materials, input,
+                                              set, loads->absorbing_faces());
+    check_absorbing(loads->absorbing_faces(), *cells, input, communicator);
     auto faces = make_face_points(communicator, triangulation, groups,
                                   materials, driven_, input, set);
     points_ = std::move(faces.points);
@@ -171,6 +189,9 @@ namespace nsfd
     fill_slots(points_, *cells);
     cells->n_global = triangulation.n_global_active_cells();
     cells_ = std::move(cells);
+    loads->set_initial_stress(
+        InitialStress<dim>::make(input, *cells_, points_, origins_));
+    loads_ = std::move(loads);
     check_graded(input, *cells_, communicator);
     extremes_ = material_extremes(input, *cells_, communicator);
 
@@ -215,14 +236,21 @@ namespace nsfd
     if (material.kind == MaterialKind::finite_strain)
       return cauchy_stress<dim>(material, input_->plane_stress, gradient);
     const auto &of_cell = cells_->class_shape(body).elasticity;
-    if (of_cell.size() == 1)
-      return of_cell[0].stress(gradient);
-    return LinearElasticity<dim>(
-               material,
-               local_moduli<dim>(material,
-                                 a_little_inside(x, cells_->centre(body))),
-               input_->plane_stress)
-        .stress(gradient);
+    auto stress =
+        of_cell.size() == 1
+            ? of_cell[0].stress(gradient)
+            : LinearElasticity<dim>(
+                  material,
+                  local_moduli<dim>(material,
+                                    a_little_inside(x, cells_->centre(body))),
+                  input_->plane_stress)
+                  .stress(gradient);
+    if (material.initial_stress.is_given()) {
+      const auto initial = InitialStress<dim>::at(material, x);
+      for (unsigned int k = 0; k < stress.size(); ++k)
+        stress[k] += initial[k];
+    }
+    return stress;
   }
 
   template <int dim>

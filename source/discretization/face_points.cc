@@ -325,6 +325,8 @@ namespace nsfd
                              shares_.of_face(cell_1, cell_2, block)});
       face.face.bodies = {{body_of_[cell_1->active_cell_index()],
                            body_of_[cell_2->active_cell_index()]}};
+      face.face.materials = {{materials_[cell_1->active_cell_index()],
+                              materials_[cell_2->active_cell_index()]}};
       face.face.cells = {{cell_1->global_active_cell_index(),
                           cell_2->global_active_cell_index()}};
       face.owned = is_ours(cell_1);

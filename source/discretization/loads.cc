@@ -17,7 +17,9 @@ namespace nsfd
   Loads<dim>::Loads(const Triangulation<dim> &triangulation,
                     const MeshGroups<dim> &groups, const SceneInput &input,
                     const CellSet set)
-      : input_(input)
+      : input_(input), any_(input.has_initial_stress()),
+        absorbing_faces_(
+            find_absorbing_faces(triangulation, groups, input, set))
   {
     for (unsigned int c = 0; c < dim; ++c)
       any_ |= input.gravity[c] != 0.;
@@ -51,6 +53,9 @@ namespace nsfd
                        std::vector<double> &nodal) const
   {
     add_volume(cells, t, nodal);
+    if (initial_stress_)
+      for (std::size_t k = 0; k < nodal.size(); ++k)
+        nodal[k] += initial_stress_->forces()[k];
     for (const auto &load : faces_) {
       const auto &boundary = input_.boundaries[load.boundary];
       const auto of_body = cells.shape(load.body);

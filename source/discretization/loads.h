@@ -1,7 +1,9 @@
 #pragma once
 
-#include "cells.h"
+#include "absorbing_sides.h"
+#include "initial_stress.h"
 
+#include <memory>
 #include <vector>
 
 namespace nsfd
@@ -9,7 +11,10 @@ namespace nsfd
   template <int dim>
   class MeshGroups;
 
-  /** Gravity, body forces, tractions and pressures as forces at the nodes. */
+  /**
+   * Gravity, body forces, tractions and pressures as forces at the nodes, and
+   * what else acts on cells and sides: an initial stress, absorbing sides.
+   */
   template <int dim>
   class Loads
   {
@@ -20,6 +25,21 @@ namespace nsfd
 
     bool any() const { return any_; }
     bool depend_on_time() const { return depend_on_time_; }
+
+    /** After the points are there. */
+    void set_initial_stress(std::unique_ptr<const InitialStress<dim>> stress)
+    {
+      initial_stress_ = std::move(stress);
+    }
+    /** Null: there is none. */
+    const InitialStress<dim> *initial_stress() const
+    {
+      return initial_stress_.get();
+    }
+    const std::vector<AbsorbingFace> &absorbing_faces() const
+    {
+      return absorbing_faces_;
+    }
 
     /** Add those at time @p t to a nodal vector. */
     void add(const Cells<dim> &cells, double t,
@@ -35,5 +55,7 @@ namespace nsfd
       unsigned int body, face, boundary;
     };
     std::vector<LoadedFace> faces_;
+    std::unique_ptr<const InitialStress<dim>> initial_stress_; ///< or null
+    std::vector<AbsorbingFace> absorbing_faces_;
   };
 } // namespace nsfd

@@ -60,6 +60,15 @@ namespace nsfd
                                   history_dependent_model(scene)),
                       "remove the section Adaptivity, or write model = linear "
                       "elastic");
+      refuse(scene.has_initial_stress() &&
+                 std::any_of(scene.interfaces.begin(), scene.interfaces.end(),
+                             [](const InterfaceInput &block) {
+                               return block.law_name == "elastic" ||
+                                      (block.law && !block.law->extrinsic());
+                             }),
+             "new faces with springs would not carry the initial stress",
+             "remove the section Adaptivity, or take extrinsic laws and law = "
+             "joined");
       if (scene.time.scheme.at_nodes && has_simplices(scene))
         return check_bisection(reader, scene);
       refuse(has_simplices(scene),

@@ -69,6 +69,31 @@ namespace nsfd
                                  space.degree + 1));
     }
 
+    void read_absorbing(SectionReader &reader, const SceneInput &scene,
+                        const bool is_driven, BoundaryInput &boundary)
+    {
+      boundary.absorbs = reader.boolean(
+          "absorbing", false,
+          "true: waves that come in along the normal leave; -rho c v per area, "
+          "c_p along the normal and c_s across it");
+      if (!boundary.absorbs)
+        return;
+      if (is_driven)
+        reader.error("absorbing",
+                     "a side whose motion is prescribed absorbs nothing",
+                     "give the motion a Boundary block of its own, or write "
+                     "absorbing = false");
+      if (scene.iterates())
+        reader.error(
+            "absorbing",
+            fmt::format("absorbing = true is for linear elastic bodies in "
+                        "small motions, and the scene has {}",
+                        scene.large_motion ? "motion = large"
+                                           : history_dependent_model(scene)),
+            "write absorbing = false and a mesh so large that no wave comes "
+            "back");
+    }
+
     BoundaryInput read_boundary(SectionReader &reader, const SceneInput &scene)
     {
       BoundaryInput boundary;
@@ -82,7 +107,7 @@ namespace nsfd
           reader.choice("motion", "given", {"given", "exact"},
                         "given, or exact: that of the verification case") ==
           "exact";
-      bool has_effect = boundary.exact_motion;
+      bool has_effect = boundary.exact_motion, has_driven = has_effect;
       for (unsigned int c = 0; c < scene.dimension; ++c) {
         const bool here = read_component(reader, c, boundary);
         if (here && boundary.exact_motion)
@@ -90,6 +115,8 @@ namespace nsfd
                        "motion = exact leaves nothing else to prescribe",
                        "keep one of the two");
         has_effect = here || has_effect;
+        has_driven =
+            has_driven || boundary.velocity[c] || boundary.displacement[c];
       }
       check_points(reader, scene, boundary);
       refuse_third_component(reader, {"velocity", "displacement", "traction"},
@@ -103,7 +130,8 @@ namespace nsfd
         boundary.pressure = *pressure;
         boundary.has_pressure = true;
       }
-      if (!has_effect && !boundary.has_pressure)
+      read_absorbing(reader, scene, has_driven, boundary);
+      if (!has_effect && !boundary.has_pressure && !boundary.absorbs)
         reader.error("",
                      fmt::format("section `{}` prescribes nothing",
                                  reader.section_name()),

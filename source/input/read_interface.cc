@@ -208,8 +208,10 @@ namespace nsfd
                        "dilatancy", "dilatancy saturation", "wear coefficient"},
                       reason);
         reader.refuse(cohesive_entries(), reason);
+        refuse_initial_stress(reader, reason);
         return input;
       }
+      input.initial_stress = read_initial_traction(reader, scene);
       if (input.law_name == "contact") {
         read_contact(reader, input);
         read_crack_pressure(reader, input);
@@ -313,9 +315,11 @@ namespace nsfd
   double read_friction_exponent(SectionReader &reader, const CohesiveLaw *law)
   {
     // a law that adds openings has Coulomb friction beside it all the time
-    return reader.number("friction exponent",
-                         law && law->adds_openings() ? "0" : "1", units::none,
-                         Range::non_negative(),
+    const double otherwise = !law                   ? 1.
+                             : law->adds_openings() ? 0.
+                                                    : law->friction_exponent();
+    return reader.number("friction exponent", fmt::format("{:g}", otherwise),
+                         units::none, Range::non_negative(),
                          "s of kappa = (1 - beta)^s; 0: full friction always");
   }
 

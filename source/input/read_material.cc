@@ -24,6 +24,14 @@ namespace nsfd
 
   namespace
   {
+    constexpr const char *stress_components[] = {"xx", "yy", "zz",
+                                                 "xy", "xz", "yz"};
+
+    std::string stress_name(const unsigned int k)
+    {
+      return std::string("initial stress ") + stress_components[k];
+    }
+
     /** False if it is none: what the other entries mean is unknown. */
     bool read_model(SectionReader &reader, const SceneInput &scene,
                     MaterialInput &material)
@@ -65,8 +73,70 @@ namespace nsfd
       refuse_third_component(
           reader, {"initial displacement", "initial velocity", "body force"},
           scene);
+      if (material.kind == MaterialKind::small_strain && !scene.large_motion)
+        material.initial_stress = read_initial_stress(
+            reader, scene, "Pa, of x, y, z: where there is no strain");
+      else if (scene.large_motion)
+        refuse_initial_stress(reader, "with motion = large bodies are "
+                                      "without stress where they start");
+      else
+        refuse_initial_stress(
+            reader, fmt::format("bodies of model = {} have no stress without "
+                                "strain",
+                                material.model_name));
+    }
+
+    /** Their cells are stepped by other forces than those of the others. */
+    void refuse_with_history(const std::vector<ParameterSection *> &blocks,
+                             InputErrors &errors, const SceneInput &scene)
+    {
+      for (std::size_t m = 0; scene.has_history() && m < blocks.size(); ++m)
+        if (scene.materials[m].initial_stress.is_given()) {
+          SectionReader reader(*blocks[m], errors);
+          refuse_initial_stress(
+              reader, fmt::format("the scene has a material with history, {}",
+                                  history_dependent_model(scene)));
+        }
     }
   } // namespace
+
+  StressInput read_initial_stress(SectionReader &reader,
+                                  const SceneInput &scene,
+                                  const std::string &text)
+  {
+    StressInput stress;
+    for (unsigned int k = 0; k < 6; ++k) {
+      const std::string name = stress_name(k);
+      if (scene.dimension == 2 && k > 3)
+        reader.refuse({name}, "dimension = 2 has no shear stress along z");
+      else if (k == 2 && scene.dimension == 2 && scene.plane_stress)
+        reader.refuse({name}, "in plane stress it is 0");
+      else if (reader.optional(name, text))
+        stress.parts[k] =
+            read_initial_expression(reader, name, "", units::pressure, text);
+    }
+    return stress;
+  }
+
+  StressInput read_initial_traction(SectionReader &reader,
+                                    const SceneInput &scene)
+  {
+    if (!scene.iterates())
+      return read_initial_stress(reader, scene,
+                                 "Pa, of x, y, z: its traction acts on the "
+                                 "faces at t = 0; default: that of the cells");
+    refuse_initial_stress(
+        reader, scene.large_motion ? "with motion = large bodies are "
+                                     "without stress where they start"
+                                   : "the scene has a material with history");
+    return {};
+  }
+
+  void refuse_initial_stress(SectionReader &reader, const std::string &reason)
+  {
+    for (unsigned int k = 0; k < 6; ++k)
+      reader.refuse({stress_name(k)}, reason);
+  }
 
   std::string history_dependent_model(const SceneInput &scene)
   {
@@ -88,7 +158,8 @@ namespace nsfd
   void read_materials(ParameterFile &file, InputErrors &errors,
                       SceneInput &scene)
   {
-    for (ParameterSection *block : file.open_blocks("Material")) {
+    const auto blocks = file.open_blocks("Material");
+    for (ParameterSection *block : blocks) {
       SectionReader reader(*block, errors);
       MaterialInput material;
       material.name = block->block_name();
@@ -98,6 +169,7 @@ namespace nsfd
         read_fields(reader, scene, material);
       scene.materials.push_back(material);
     }
+    refuse_with_history(blocks, errors, scene);
     if (scene.materials.empty())
       errors.error(file.location(), "the scene has no material",
                    "add for example: subsection Material: bulk");

@@ -49,6 +49,16 @@ namespace nsfd
    */
   void look_at_scheme(const ParameterFile &file, SceneInput &scene);
 
+  /** Entries `initial stress xx` and so on; none may be given. */
+  StressInput read_initial_stress(SectionReader &reader,
+                                  const SceneInput &scene,
+                                  const std::string &text);
+  /** The same of an Interface block. */
+  StressInput read_initial_traction(SectionReader &reader,
+                                    const SceneInput &scene);
+  /** Those of them that the file gives are reported, with the reason. */
+  void refuse_initial_stress(SectionReader &reader, const std::string &reason);
+
   void read_materials(ParameterFile &file, InputErrors &errors,
                       SceneInput &scene);
   void read_interfaces(ParameterFile &file, InputErrors &errors,

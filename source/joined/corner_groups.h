@@ -45,7 +45,17 @@ namespace nsfd
     void scatter(const std::vector<double> &of_groups,
                  std::vector<double> &of_corners) const;
 
+    /** Of what an impulse pushes, 1/kg: heavier by the drag. */
+    double inverse_mass(const std::size_t group, const unsigned int c) const
+    {
+      const std::size_t k = group * dim + c;
+      return 1. / (k < drag.size() ? mass[group] + drag[k] : mass[group]);
+    }
+
     std::vector<double> mass; ///< kg, or kg/m in the plane
+    /// the same by component, what absorbing sides add to the mass in the
+    /// present kick, see AbsorbingNodes; empty: nothing
+    std::vector<double> drag;
     /// dim components per group: m, m/s and N
     std::vector<double> displacement, velocity, force;
     /// N, of `force`: what corners got from hanging nodes, see HangingNodes

@@ -53,10 +53,13 @@ namespace nsfd
     /** R_max of a point that was never open, T(d_m) on a plateau. */
     double strength() const { return law_.strength(history_); }
 
-    /** What is compared with it: LawPoint::effective_traction(). */
+    /** What is compared with it: LawPoint::effective_traction(), with the
+        friction that holds what is intact. */
     double effective_traction(const double normal, const double *shear) const
     {
-      return law_.effective_traction<dim>(normal, shear);
+      return law_.effective_traction<dim>(
+          normal, shear,
+          interaction_.friction_exponent == 0. ? interaction_.friction : 0.);
     }
 
     double beta(const Reach &history) const { return law_.beta(history); }

@@ -10,35 +10,31 @@ namespace nsfd
         "impact",    "numerical", "work",      "ledger_defect", "broken_area",
         "fragments", "active",    "newton",    "krylov",        "residual"};
 
-    std::vector<std::string> columns(const std::vector<std::string> &driven,
-                                     const unsigned int dimension)
+    std::vector<std::string> names(const HistoryFile::Columns &columns)
     {
       auto result = fixed_columns;
-      for (const auto &name : driven)
-        for (unsigned int d = 0; d < dimension; ++d)
+      for (const auto &name : columns.driven)
+        for (unsigned int d = 0; d < columns.dimension; ++d)
           result.push_back("reaction_" + name + '_' + "xyz"[d]);
+      if (columns.absorbed)
+        result.push_back("absorbed");
       return result;
     }
   } // namespace
 
-  std::string HistoryFile::header(const std::vector<std::string> &driven,
-                                  const unsigned int dimension)
+  std::string HistoryFile::header(const Columns &columns)
   {
-    return TableFile::header(columns(driven, dimension));
+    return TableFile::header(names(columns));
   }
 
-  HistoryFile::HistoryFile(const std::string &path,
-                           const std::vector<std::string> &driven,
-                           const unsigned int dimension)
-      : file_(path, columns(driven, dimension))
+  HistoryFile::HistoryFile(const std::string &path, const Columns &columns)
+      : absorbed_(columns.absorbed), file_(path, names(columns))
   {
   }
 
-  HistoryFile::HistoryFile(const std::string &path,
-                           const std::vector<std::string> &driven,
-                           const unsigned int dimension,
+  HistoryFile::HistoryFile(const std::string &path, const Columns &columns,
                            const std::uintmax_t n_bytes)
-      : file_(path, columns(driven, dimension), n_bytes)
+      : absorbed_(columns.absorbed), file_(path, names(columns), n_bytes)
   {
   }
 
@@ -66,23 +62,29 @@ namespace nsfd
                                 double(row.krylov),
                                 row.residual};
     line.insert(line.end(), row.reactions.begin(), row.reactions.end());
+    if (absorbed_)
+      line.push_back(e.absorbed);
     file_.write(line);
   }
 
   std::vector<HistoryRow> HistoryFile::read(const std::string &path,
-                                            const std::size_t n_reactions,
+                                            const Columns &columns,
                                             const std::uintmax_t n_bytes)
   {
     const std::size_t n_fixed = fixed_columns.size();
     std::vector<HistoryRow> rows;
     for (const auto &x :
-         TableFile::read(path, n_fixed + n_reactions, n_bytes)) {
+         TableFile::read(path, names(columns).size(), n_bytes)) {
       HistoryRow &row = rows.emplace_back();
       row.step = unsigned(x[0]);
       row.time = x[1];
       row.time_step = x[2];
-      row.energy = {x[3], x[4], x[5],  x[6],  x[7],
-                    x[8], x[9], x[10], x[11], x[12]};
+      auto &e = row.energy;
+      double *const lines[] = {&e.kinetic,   &e.elastic, &e.cohesive, &e.damage,
+                               &e.friction,  &e.viscous, &e.plastic,  &e.impact,
+                               &e.numerical, &e.work};
+      for (unsigned int k = 0; k < 10; ++k)
+        *lines[k] = x[3 + k];
       row.balance_residual = x[13];
       row.broken_area = x[14];
       row.fragments = unsigned(x[15]);
@@ -90,7 +92,11 @@ namespace nsfd
       row.newton = unsigned(x[17]);
       row.krylov = unsigned(x[18]);
       row.residual = x[19];
-      row.reactions.assign(x.begin() + long(n_fixed), x.end());
+      const auto reactions = x.begin() + long(n_fixed),
+                 end = reactions + long(columns.n_reactions());
+      row.reactions.assign(reactions, end);
+      if (columns.absorbed)
+        e.absorbed = *end;
     }
     return rows;
   }

@@ -13,16 +13,24 @@ namespace nsfd
   class HistoryFile
   {
   public:
-    /** Starts the file; @p driven are the names of the driven boundaries. */
-    HistoryFile(const std::string &path, const std::vector<std::string> &driven,
-                unsigned int dimension);
+    /** What follows the columns that all runs have. */
+    struct Columns {
+      std::vector<std::string> driven; ///< names of the boundaries
+      unsigned int dimension = 2;
+      bool absorbed = false; ///< there are absorbing sides: the last column
+
+      std::size_t n_reactions() const { return driven.size() * dimension; }
+    };
+
+    /** Starts the file. */
+    HistoryFile(const std::string &path, const Columns &columns);
 
     /**
      * Goes on with a file of which the first @p n_bytes are kept and what
      * follows is cut off.
      */
-    HistoryFile(const std::string &path, const std::vector<std::string> &driven,
-                unsigned int dimension, std::uintmax_t n_bytes);
+    HistoryFile(const std::string &path, const Columns &columns,
+                std::uintmax_t n_bytes);
 
     void write(const HistoryRow &row);
 
@@ -30,17 +38,17 @@ namespace nsfd
     std::uintmax_t n_bytes() { return file_.n_bytes(); }
 
     /**
-     * The rows in the first @p n_bytes of a file with so many reactions.
+     * The rows in the first @p n_bytes of a file with these columns.
      * @throws std::runtime_error if it is shorter, or these are no rows.
      */
     static std::vector<HistoryRow> read(const std::string &path,
-                                        std::size_t n_reactions,
+                                        const Columns &columns,
                                         std::uintmax_t n_bytes);
 
-    static std::string header(const std::vector<std::string> &driven,
-                              unsigned int dimension);
+    static std::string header(const Columns &columns);
 
   private:
+    const bool absorbed_;
     TableFile file_;
   };
 } // namespace nsfd

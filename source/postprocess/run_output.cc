@@ -32,7 +32,7 @@ namespace nsfd
   {
     for (const unsigned int b : discretization.driven_boundaries())
       driven_.push_back(input.boundaries[b].name);
-    units_ = units_text(dim, driven_, observables);
+    units_ = units_text(columns(), observables);
     if (options.check)
       return;
     if (communicator.is_root())
@@ -44,12 +44,18 @@ namespace nsfd
   }
 
   template <int dim>
+  HistoryFile::Columns RunOutput<dim>::columns() const
+  {
+    return {driven_, dim, input_.has_absorbing_sides()};
+  }
+
+  template <int dim>
   void RunOutput<dim>::open_files(const RunOptions &options)
   {
     if (!options.resume) {
       write_descriptions();
       history_file_ = std::make_unique<HistoryFile>(
-          input_.output.directory + "/history.csv", driven_, dim);
+          input_.output.directory + "/history.csv", columns());
     }
     progress_ = std::make_unique<Progress>(
         std::cout, input_.time.end,
@@ -218,10 +224,9 @@ namespace nsfd
       try {
         const std::string path = input_.output.directory + "/history.csv";
         for (const HistoryRow &row :
-             HistoryFile::read(path, driven_.size() * dim, n_bytes))
+             HistoryFile::read(path, columns(), n_bytes))
           keep(row);
-        history_file_ =
-            std::make_unique<HistoryFile>(path, driven_, dim, n_bytes);
+        history_file_ = std::make_unique<HistoryFile>(path, columns(), n_bytes);
       } catch (const std::exception &error) {
         failure = error.what();
       }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "history_file.h"
+
 #include "discretization/discretization.h"
 #include "nsfd/records/run_record.h"
 #include "state/state.h"
@@ -17,7 +19,6 @@ namespace nsfd
   class FragmentOutput;
   template <int dim>
   class Fragments;
-  class HistoryFile;
   class Progress;
   struct Certificate;
   struct RunFindings;
@@ -82,6 +83,7 @@ namespace nsfd
     bool is_due(const State &state) const;
 
   private:
+    HistoryFile::Columns columns() const;
     void keep(const HistoryRow &row);
     void write_descriptions() const;
     void open_files(const RunOptions &options);

@@ -174,9 +174,10 @@ namespace nsfd
                       {"elastic", number(e.elastic)},
                       {"cohesive", number(e.cohesive)}};
     json["dissipated"] = {
-        {"damage", number(e.damage)},   {"friction", number(e.friction)},
-        {"viscous", number(e.viscous)}, {"plastic", number(e.plastic)},
-        {"impact", number(e.impact)},   {"numerical", number(e.numerical)}};
+        {"damage", number(e.damage)},    {"friction", number(e.friction)},
+        {"viscous", number(e.viscous)},  {"plastic", number(e.plastic)},
+        {"impact", number(e.impact)},    {"numerical", number(e.numerical)},
+        {"absorbed", number(e.absorbed)}};
     json["work"] = number(e.work);
     if (summary.pressure_work)
       json["crack_pressure_work"] = number(*summary.pressure_work);

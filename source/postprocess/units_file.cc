@@ -9,26 +9,27 @@ namespace nsfd
     using Json = nlohmann::ordered_json;
 
     const char *const energies[] = {"kinetic", "elastic", "cohesive"};
-    const char *const losses[] = {"damage",  "friction", "viscous",
-                                  "plastic", "impact",   "numerical"};
+    const char *const losses[] = {"damage", "friction",  "viscous", "plastic",
+                                  "impact", "numerical", "absorbed"};
     const char *const pure_columns[] = {"fragments", "active", "newton",
                                         "krylov", "residual"};
 
-    Json history_units(const unsigned int dimension,
-                       const std::vector<std::string> &driven,
+    Json history_units(const HistoryFile::Columns &columns,
                        const std::string &energy)
     {
+      const unsigned int dimension = columns.dimension;
       Json units = {{"step", ""}, {"time", "s"}, {"time_step", "s"}};
       for (const char *name : energies)
         units[name] = energy;
       for (const char *name : losses)
-        units[name] = energy;
+        if (columns.absorbed || name != std::string("absorbed"))
+          units[name] = energy;
       units["work"] = energy;
       units["ledger_defect"] = "";
       units["broken_area"] = dimension == 2 ? "m" : "m^2";
       for (const char *name : pure_columns)
         units[name] = "";
-      for (const std::string &name : driven)
+      for (const std::string &name : columns.driven)
         for (unsigned int c = 0; c < dimension; ++c)
           units["reaction_" + name + '_' + "xyz"[c]] =
               dimension == 2 ? "N/m" : "N";
@@ -73,13 +74,13 @@ namespace nsfd
     }
   } // namespace
 
-  std::string units_text(const unsigned int dimension,
-                         const std::vector<std::string> &driven,
+  std::string units_text(const HistoryFile::Columns &columns,
                          const std::vector<ObservableRecord> &observables)
   {
+    const unsigned int dimension = columns.dimension;
     const std::string energy = dimension == 2 ? "J/m" : "J";
     Json json = Json::object();
-    json["history.csv"] = history_units(dimension, driven, energy);
+    json["history.csv"] = history_units(columns, energy);
     for (const ObservableRecord &record : observables) {
       Json &table = json["observables/" + record.name + ".csv"];
       table = {{"step", ""}, {"time", "s"}};

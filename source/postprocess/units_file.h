@@ -1,5 +1,7 @@
 #pragma once
 
+#include "history_file.h"
+
 #include "nsfd/records/observable_record.h"
 
 #include <string>
@@ -8,12 +10,11 @@
 namespace nsfd
 {
   /**
-   * The text of units.json: the unit of every column of history.csv, with the
-   * reactions of the @p driven boundaries, of the tables of observables, and of
-   * every number of summary.json that has one. "" is a pure number. In two
-   * dimensions energies, forces and areas are per metre of depth.
+   * The text of units.json: the unit of every column of history.csv, which are
+   * @p columns, of the tables of observables, and of every number of
+   * summary.json that has one. "" is a pure number. In two dimensions energies,
+   * forces and areas are per metre of depth.
    */
-  std::string units_text(unsigned int dimension,
-                         const std::vector<std::string> &driven,
+  std::string units_text(const HistoryFile::Columns &columns,
                          const std::vector<ObservableRecord> &observables);
 } // namespace nsfd

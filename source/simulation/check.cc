@@ -3,6 +3,7 @@
 #include "group_report.h"
 #include "limiting_cells.h"
 #include "motion_report.h"
+#include "stress_report.h"
 
 #include "advice.h"
 #include "core/exit_code.h"
@@ -465,12 +466,14 @@ namespace nsfd
     else
       advisor.unique_steps.assign(input.interfaces.size(), 0.);
     const auto limiting = limiting_cells(input, discretization, communicator);
+    const auto stress =
+        initial_stress_report(input, discretization, communicator);
     if (!communicator.is_root())
       return exit_code::done;
 
     std::cout << fmt::format("{}: checked, nothing is run\n", input.file);
     print_mesh(input, mesh, discretization, counts, step);
-    std::cout << limiting;
+    std::cout << limiting << stress;
     if (advisor.young > 0.)
       advisor.print_stiffness();
     for (unsigned int b = 0; b < input.interfaces.size(); ++b)

@@ -223,7 +223,8 @@ namespace nsfd
           const Steepest::Function stress = [&](const double t) {
             return load.at(x, t);
           };
-          if (!input_.statics)
+          // an initial stress is there to hold it
+          if (!input_.statics && !input_.has_initial_stress())
             take(std::abs(load.at(x, begin_)), begin_, name);
           if (load.depends_on_time()) {
             const Steepest steepest(stress, front.crossing, begin_,

@@ -55,8 +55,9 @@ namespace nsfd
         node.groups.push_back(group);
         std::array<double, dim> inverse;
         for (unsigned int c = 0; c < dim; ++c)
-          inverse[c] =
-              prescribed[group] & (1u << c) ? 0. : 1. / groups.mass[group];
+          inverse[c] = prescribed[group] & (1u << c)
+                           ? 0.
+                           : groups.inverse_mass(group, c);
         problem.inverse_mass.push_back(inverse);
         node.is_rigid |= (prescribed[group] & (1u << dim)) != 0;
         node.is_driven |= prescribed[group] != 0;

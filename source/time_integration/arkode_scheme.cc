@@ -81,6 +81,16 @@ namespace nsfd
 
     void read(SectionReader &reader, SceneInput &scene) const override
     {
+      if (scene.has_initial_stress())
+        reader.error("scheme",
+                     "scheme = arkode knows no initial stress, and the scene "
+                     "has one",
+                     "write scheme = moreau-jean");
+      if (scene.has_absorbing_sides())
+        reader.error("scheme",
+                     "scheme = arkode knows no absorbing sides, and the scene "
+                     "has one",
+                     "write scheme = moreau-jean");
       check_smooth(reader, scene);
       SmoothInput &smooth = scene.time.smooth;
       smooth.implicit =

@@ -43,6 +43,12 @@ namespace nsfd
       const double r2 = interaction.shear_weight;
       const double compliance =
           opening / (utilisation * point_strength<dim>(problem, i));
+      // the law has what friction does not carry of the shear
+      double shear = 0., share = 1.;
+      for (unsigned int c = 1; c < dim; ++c)
+        shear = std::hypot(shear, traction[c]);
+      if (interaction.friction_exponent == 0. && traction[0] < 0. && shear > 0.)
+        share = std::max(0., 1. + interaction.friction * traction[0] / shear);
       next.kind[i] = PointKind::cohesive;
       next.opening_max[i] = opening;
       for (unsigned int c = 0; c < dim; ++c) {
@@ -50,7 +56,7 @@ namespace nsfd
         if (c == 0)
           u = compliance * std::max(0., traction[0]);
         else
-          u = r2 > 0. ? compliance * traction[c] / r2 : 0.;
+          u = r2 > 0. ? compliance * share * traction[c] / r2 : 0.;
         next.impulse[i * dim + c] =
             -problem.weight[i] * problem.time_step * traction[c] / utilisation;
       }

@@ -52,7 +52,7 @@ namespace nsfd
   {
     return energy.kinetic + energy.elastic + energy.cohesive + energy.damage +
            energy.friction + energy.viscous + energy.plastic + energy.impact +
-           energy.numerical - energy.work - initial_energy;
+           energy.numerical + energy.absorbed - energy.work - initial_energy;
   }
 
   /**
@@ -65,7 +65,7 @@ namespace nsfd
     next.largest_energy = std::max(
         {old.largest_energy, energy.kinetic, energy.elastic, energy.cohesive,
          std::abs(energy.work), energy.damage, energy.impact, energy.friction,
-         energy.viscous, energy.plastic});
+         energy.viscous, energy.plastic, energy.absorbed});
     const double defect = balance_defect(energy, next.initial_energy);
     report.changes.defect =
         std::abs(defect - balance_defect(old.energy, next.initial_energy));

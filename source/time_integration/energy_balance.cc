@@ -77,6 +77,12 @@ namespace nsfd
         change[i] = theta_ * next.velocity[i] + (1. - theta_) * old.velocity[i];
       result.viscous = h * energy(Operator::damping, change);
     }
+    if (discretization_.input().has_absorbing_sides()) {
+      result.absorbed = h * absorbed_power(change);
+      result.viscous = discretization_.input().has_viscous_bodies()
+                           ? result.viscous - result.absorbed
+                           : 0.;
+    }
     if (discretization_.loads().any()) {
       for (std::size_t i = 0; i < n; ++i)
         terms[i] =
@@ -85,6 +91,25 @@ namespace nsfd
       result.work = communicator.sum(terms);
     }
     return result;
+  }
+
+  /** v.C v of the dashpots alone. */
+  template <int dim>
+  double
+  EnergyBalance<dim>::absorbed_power(const std::vector<double> &velocity) const
+  {
+    const Bodies &bodies = discretization_.bodies();
+    std::vector<double> terms(velocity.size(), 0.);
+    for (const BodyClass &one : bodies.classes) {
+      const Block &C = one.absorbing;
+      for (const unsigned int b : one.bodies) {
+        const double *const v = &velocity[bodies.first_dof[b]];
+        for (unsigned int j = 0; j < C.cols; ++j)
+          for (unsigned int i = 0; i < C.rows; ++i)
+            terms[bodies.first_dof[b] + i] += v[i] * C(i, j) * v[j];
+      }
+    }
+    return delassus_.communicator().sum(terms);
   }
 
   /** w h p U_theta,N of the pressure in cracks. */
@@ -131,6 +156,7 @@ namespace nsfd
       energy.viscous += sums[Points::viscous];
     energy.plastic += bodies.plastic;
     energy.viscous += bodies.viscous;
+    energy.absorbed += bodies.absorbed;
     if (has_opening_viscosity(discretization_.input())) {
       next.viscous_traction =
           std::max(old.viscous_traction.value_or(0.),

@@ -52,6 +52,7 @@ namespace nsfd
     const std::vector<double> &reactions() const { return reactions_; }
 
   private:
+    double absorbed_power(const std::vector<double> &velocity) const;
     double pressure_work(const OneStepProblem<dim> &problem, const State &old,
                          const State &next) const;
 

@@ -34,6 +34,10 @@ namespace nsfd
              const State &state);
     std::size_t bad_point() const { return bad_point_; }
 
+    bool any() const { return !springs_.empty(); }
+    /** Of one of them, if there are any. */
+    std::size_t a_point() const { return any() ? springs_[0].point : 0; }
+
     /** As in the steps that follow. */
     const LeapfrogChains<dim> &chains() const { return chains_; }
 

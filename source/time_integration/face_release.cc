@@ -1,6 +1,7 @@
 #include "face_release.h"
 
 #include "discretization/cells.h"
+#include "discretization/loads.h"
 #include "discretization/point_factors.h"
 #include "nsfd/core/archive.h"
 #include "nsfd/scene/scene_input.h"
@@ -111,6 +112,16 @@ namespace nsfd
                     block.plateau);
   }
 
+  /** What holds intact faces as well, mu. */
+  template <int dim>
+  double FaceRelease<dim>::friction_of(const std::size_t site) const
+  {
+    const auto &block =
+        discretization_.input().interfaces
+            [discretization_.origins()[sites_[site].first_point].block];
+    return block.friction_exponent == 0. ? block.friction : 0.;
+  }
+
   template <int dim>
   typename LeapfrogPoints<dim>::Factors
   FaceRelease<dim>::factors(const unsigned int point) const
@@ -165,7 +176,7 @@ namespace nsfd
     return local;
   }
 
-  /** With what viscous materials add. */
+  /** With what viscous materials and an initial stress add. */
   template <int dim>
   std::array<double, dim>
   FaceRelease<dim>::traction(const CellForces<dim> &forces,
@@ -173,7 +184,8 @@ namespace nsfd
   {
     auto t = forces.traction(sites_, site);
     const auto *viscous = forces.viscous();
-    if (!viscous)
+    const auto *initial = discretization_.loads().initial_stress();
+    if (!viscous && !initial)
       return t;
     const auto &weight = discretization_.points().weight;
     const unsigned int first = sites_[site].first_point,
@@ -182,26 +194,43 @@ namespace nsfd
     for (unsigned int i = first; i < last; ++i)
       length += weight[i];
     for (unsigned int i = first; i < last; ++i) {
-      const auto more = viscous->traction(i);
-      for (unsigned int c = 0; c < dim; ++c)
-        t[c] += weight[i] / length * more[c];
+      for (unsigned int c = 0; viscous && c < dim; ++c)
+        t[c] += weight[i] / length * viscous->traction(i)[c];
+      for (unsigned int c = 0; initial && c < dim; ++c)
+        t[c] += weight[i] / length * initial->traction(i)[c] / share_of(site);
     }
     return t;
   }
 
-  /** Where viscous materials add to tractions, these are at hand nowhere. */
+  /** Something else than strains gives a traction at a site. */
   template <int dim>
-  void FaceRelease<dim>::add_viscous(const CellForces<dim> &forces)
+  bool FaceRelease<dim>::has_more(const CellForces<dim> &forces,
+                                  const std::size_t site) const
   {
-    const auto &viscous = *forces.viscous();
+    const auto &one = sites_[site];
+    if (const auto *viscous = forces.viscous())
+      for (const unsigned int cell : one.cells)
+        if (viscous->acts_in(cell))
+          return true;
+    if (const auto *initial = discretization_.loads().initial_stress())
+      for (unsigned int i = one.first_point; i < one.first_point + one.n_points;
+           ++i)
+        for (unsigned int c = 0; c < dim; ++c)
+          if (initial->traction(i)[c] != 0.)
+            return true;
+    return false;
+  }
+
+  /** Where more than strains adds to tractions, these are at hand nowhere. */
+  template <int dim>
+  void FaceRelease<dim>::add_more(const CellForces<dim> &forces)
+  {
     typename StrengthSites<dim>::Near all;
     auto square = near_.square.begin();
     auto site = near_.site.begin();
     for (unsigned int k = 0; k < sites_.size(); ++k) {
       const bool is_near = site != near_.site.end() && *site == k;
-      const auto &cells = sites_[k].cells;
-      if (!sites_.is_released(k) &&
-          (viscous.acts_in(cells[0]) || viscous.acts_in(cells[1]))) {
+      if (!sites_.is_released(k) && has_more(forces, k)) {
         all.site.push_back(k);
         all.square.push_back(sites_.square(k, traction(forces, k)));
       } else if (is_near) {
@@ -223,8 +252,8 @@ namespace nsfd
     std::vector<unsigned int> released;
     std::swap(near_, last_near_);
     forces.squared_tractions(sites_, near_);
-    if (forces.viscous())
-      add_viscous(forces);
+    if (forces.viscous() || discretization_.loads().initial_stress())
+      add_more(forces);
     constexpr double seen = StrengthSites<dim>::looked_at,
                      least = (too_far + seen) / 2.;
     std::size_t last = 0;
@@ -235,10 +264,11 @@ namespace nsfd
         continue;
       const LawPoint here = law(k);
       double share = share_of(k) * std::sqrt(square) / here.strength();
-      if (here.law().mixed()) {
+      const double friction = friction_of(k);
+      if (here.law().mixed() || friction > 0.) {
         const auto t = in_frame(sites_[k].first_point, traction(forces, k));
         share = share_of(k) *
-                here.template effective_traction<dim>(t[0], &t[1]) /
+                here.template effective_traction<dim>(t[0], &t[1], friction) /
                 here.strength();
       }
       if (!held_.empty() && held_[k]) {

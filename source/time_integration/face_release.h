@@ -74,7 +74,9 @@ namespace nsfd
     {
       return share_.empty() ? 1. : share_[site];
     }
-    void add_viscous(const CellForces<dim> &forces);
+    double friction_of(std::size_t site) const;
+    bool has_more(const CellForces<dim> &forces, std::size_t site) const;
+    void add_more(const CellForces<dim> &forces);
     void let_go(std::size_t site, std::vector<unsigned int> &released);
 
     const Discretization<dim> &discretization_;

@@ -5,13 +5,19 @@
 #include "state/point_fields.h"
 
 #include "bond_release.h"
+#include "point_name.h"
 #include "step_data.h"
+
+#include "discretization/loads.h"
 
 #include "nonsmooth/point_law.h"
 #include "nsfd/scene/scene_input.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace nsfd
 {
@@ -79,6 +85,60 @@ namespace nsfd
           state.slip_max[i] = history.slip;
         state.beta[i] = beta_of(interaction, state.kind[i], factor, history);
       }
+    }
+
+    /** The intact springs of a block have a jump before they break. */
+    bool has_springs(const InterfaceInput &block)
+    {
+      return (block.intact == IntactFaces::spring ||
+              block.intact == IntactFaces::unilateral) &&
+             (block.law_name == "elastic" ||
+              (block.law && !block.law->extrinsic()));
+    }
+
+    /**
+     * The jump at which the springs of a point carry the traction @p t, to
+     * round-off: u = t / K(u) from the undamaged secants on, which grows until
+     * it is the smallest solution. False if there is none before the peak.
+     */
+    template <int dim>
+    bool find_jump(const InterfaceInput &block,
+                   const OneStepProblem<dim> &problem, const std::size_t i,
+                   const double *t, double *u)
+    {
+      const auto &interaction = problem.interactions[problem.interaction[i]];
+      const double closing = block.intact == IntactFaces::spring
+                                 ? t[0] / intact_stiffness<dim>(problem, i)
+                                 : 0.; // contact carries it
+      const auto open = [&](const Secant &secant) {
+        u[0] = t[0] > 0. ? t[0] / secant.normal : closing;
+        for (unsigned int c = 1; c < dim; ++c)
+          u[c] = t[c] / secant.tangential;
+      };
+      if (!interaction.law) {
+        const double C = interaction.normal_stiffness;
+        open({C, C * interaction.stiffness_ratio});
+        return true;
+      }
+      const LawPoint law(*interaction.law, problem.strength_factor[i],
+                         problem.opening_factor[i], interaction.plateau,
+                         interaction.stiffness_ratio, interaction.shear_weight);
+      Reach reach;
+      // as slow as this it is at its peak
+      constexpr unsigned int most = 100000;
+      for (unsigned int k = 0; k < most; ++k) {
+        open(law.secant(reach));
+        const Reach next = law.reach(JumpSize::of<dim>(u));
+        if (past_peak(*interaction.law, problem.opening_factor[i], next))
+          return false;
+        const auto rests = [](const double a, const double b) {
+          return std::abs(a - b) <= 1e-15 * b;
+        };
+        if (rests(reach.opening, next.opening) && rests(reach.slip, next.slip))
+          return true;
+        reach = next;
+      }
+      return false;
     }
 
     /** Stored in springs and cohesion, over the points of this rank. */
@@ -183,6 +243,8 @@ namespace nsfd
     delassus.relative_velocity(state.displacement.data(), state.jump.data());
     delassus.relative_velocity(state.velocity.data(),
                                state.relative_velocity.data());
+    add_initial_jumps(input, discretization, problem, delassus.communicator(),
+                      state);
     set_points(input, discretization, problem, state);
     if (bonded) {
       hold_by_rows(problem, *bonded, state);
@@ -192,6 +254,47 @@ namespace nsfd
     set_energies(delassus, problem, state);
     begin_balance(state);
     return state;
+  }
+
+  template <int dim>
+  void add_initial_jumps(const SceneInput &input,
+                         const Discretization<dim> &discretization,
+                         const OneStepProblem<dim> &problem,
+                         const Communicator &communicator, State &state)
+  {
+    const InitialStress<dim> *const initial =
+        discretization.loads().initial_stress();
+    if (!initial)
+      return;
+    const auto &origins = discretization.origins();
+    std::string failure;
+    for (std::size_t i = 0; i < origins.size(); ++i) {
+      if (origins[i].kind != PointOrigin::Kind::interface)
+        continue;
+      const InterfaceInput &block = input.interfaces[origins[i].block];
+      if (!has_springs(block) ||
+          (block.has_broken &&
+           block.broken.at(position_of(discretization.points(), i), 0.) != 0.))
+        continue;
+      const double *const t = initial->local_traction(i);
+      std::array<double, dim> u;
+      if (find_jump(block, problem, i, t, u.data())) {
+        for (unsigned int c = 0; c < dim; ++c)
+          state.jump[i * dim + c] += u[c];
+      } else if (failure.empty())
+        failure = fmt::format(
+            "the initial stress puts {:.4g} Pa across and {:.4g} Pa along {}, "
+            "which reaches the strength of the law {}: take a smaller initial "
+            "stress, or write broken = true there",
+            t[0], std::hypot(t[1], dim == 3 ? t[dim - 1] : 0.),
+            name_of_point<dim>(input, origins, discretization.points().position,
+                               i),
+            block.law_name);
+    }
+    if (communicator.any(!failure.empty()))
+      throw std::runtime_error(
+          failure.empty() ? "the initial stress reaches the strength of a law"
+                          : failure);
   }
 
   template <int dim>
@@ -259,6 +362,9 @@ namespace nsfd
   template void set_energies(const DelassusOperator<dim> &,                    \
                              const OneStepProblem<dim> &, State &);            \
   template void join_motion(JoinedDelassus<dim> &, State &);                   \
+  template void add_initial_jumps(                                             \
+      const SceneInput &, const Discretization<dim> &,                         \
+      const OneStepProblem<dim> &, const Communicator &, State &);             \
   template State initial_motion(const SceneInput &,                            \
                                 const Discretization<dim> &);                  \
   template double stored_in_points(                                            \

@@ -59,6 +59,18 @@ namespace nsfd
                   const Discretization<dim> &discretization,
                   const OneStepProblem<dim> &problem, State &state);
 
+  /**
+   * Springs that carry an initial stress are open, or closed, by what this
+   * takes: added to the jumps of @p state.
+   * @throws std::runtime_error with a sentence for the user, on all ranks,
+   * where a law cannot carry it. Collective.
+   */
+  template <int dim>
+  void add_initial_jumps(const SceneInput &input,
+                         const Discretization<dim> &discretization,
+                         const OneStepProblem<dim> &problem,
+                         const Communicator &communicator, State &state);
+
   /** Of springs and cohesion at the jumps of @p state, in J. Collective. */
   template <int dim>
   double stored_in_points(const Communicator &communicator,

@@ -6,6 +6,7 @@
 
 #include "discretization/body_frequency.h"
 #include "discretization/cells.h"
+#include "discretization/loads.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <fmt/format.h>
@@ -197,6 +198,15 @@ namespace nsfd
   {
     State joined = state; // kinds of points become others
     intact_ = joined_points(discretization_, joined);
+    for (std::size_t i = 0; i < intact_.size(); ++i) {
+      const PointOrigin &origin = discretization_.origins()[i];
+      if (origin.kind != PointOrigin::Kind::interface ||
+          joined.kind[i] != PointKind::rigid)
+        continue;
+      const auto &law = input_.interfaces[origin.block].law;
+      if (law && law->friction_exponent() == 0.)
+        intact_[i] = 1; // a fault that holds
+    }
     groups_ = std::make_unique<CornerGroups<dim>>(mesh_, intact_);
     auto &groups = *groups_;
     groups.gather(state.displacement, groups.displacement);
@@ -209,6 +219,11 @@ namespace nsfd
     refuse(!springs, springs_.bad_point(), state,
            "a law has no straight part to begin on",
            "take another law, or write scheme = moreau-jean");
+    refuse(
+        springs_.any() && discretization_.loads().initial_stress(),
+        springs_.a_point(), state,
+        "springs that carry an initial stress are beyond their place at rest",
+        "write scheme = moreau-jean, or begin with a motion");
     supports_.find(groups, {});
     loads_.start(state.time, groups);
     given_ = loads_.sum(state.time, nullptr, springs_.chains(), groups);

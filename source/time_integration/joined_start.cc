@@ -12,7 +12,12 @@ namespace nsfd
 {
   namespace
   {
-    /** A law between two rigid bodies. */
+    /**
+     * By its law from the start on: between two rigid bodies, and in a fault,
+     * where it is the force at a node that decides. A node of common nodes
+     * comes apart only when all faces at it have been released, the last of
+     * them by the traction of the cells ahead, which is below that of the node.
+     */
     template <int dim>
     bool is_held(const Discretization<dim> &discretization,
                  const typename InterfacePoints<dim>::Face &face)
@@ -22,6 +27,8 @@ namespace nsfd
               .interfaces[discretization.origins()[face.first].block];
       if (!block.law)
         return false;
+      if (block.law->friction_exponent() == 0.)
+        return true;
       const BodyClass *classes[2];
       for (unsigned int side = 0; side < 2; ++side) {
         const int b = face.bodies[side];

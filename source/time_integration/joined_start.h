@@ -15,7 +15,8 @@ namespace nsfd
    * @p state has it, where its kind becomes `bonded`. A law between two rigid
    * cells of different materials holds them from the start instead: they have
    * no stress that would tell when it is needed. Those of one material are one
-   * body, whatever law their faces have.
+   * body, whatever law their faces have. Laws of faults (full friction from the
+   * start) hold them from the start, too.
    */
   template <int dim>
   std::vector<std::uint8_t>

@@ -47,6 +47,8 @@ namespace nsfd
         })
   {
     ghosts_.set_mesh(mesh_, hanging_);
+    if (const auto *absorbing = loads_.absorbing())
+      absorbing->check(communicator_);
     if (auto *finite = dynamic_cast<FiniteForces<dim> *>(forces_.get()))
       large_ = std::make_unique<LeapfrogLarge<dim>>(
           input, discretization_, mesh_, all_, communicator_, *finite);
@@ -94,7 +96,9 @@ namespace nsfd
       loads.push_back(&loads_.of_groups());
     if (loads_.cracks())
       loads.push_back(&loads_.cracks()->of_groups());
-    const std::size_t n_rows = 3 + 2 * loads.size() + (other_length ? 1 : 0);
+    const auto *absorbing = loads_.absorbing();
+    const std::size_t n_rows =
+        3 + 2 * loads.size() + (absorbing ? 1 : 0) + (other_length ? 1 : 0);
     terms_.resize(n_rows * n);
     double *const rows = terms_.data();
     for (std::size_t i = 0, k = 0; i < g.size(); ++i)
@@ -112,6 +116,10 @@ namespace nsfd
           row[k] = (*load)[k] * (*velocity)[k];
         row += n;
       }
+    if (absorbing) {
+      absorbing->put_energy(kick, before_.velocity, g, row);
+      row += n;
+    }
     for (std::size_t k = 0; other_length && k < n; ++k)
       row[k] = g.force[k] * before_.velocity[k];
     const double of_bodies = rigid_ ? rigid_->kinetic_energy(g, terms_) : 0.;
@@ -125,6 +133,8 @@ namespace nsfd
       const std::size_t at = 1 + 2 * loads.size();
       energies.pressure_work = kick / 2. * (sums[at] + sums[at + 1]);
     }
+    if (absorbing)
+      energies.absorbed = sums[3 + 2 * loads.size()];
     if (other_length) {
       energies.power_before = sums.back();
       energies.numerical = (h - last) / 4. * (sums[1] - sums.back());
@@ -207,6 +217,10 @@ namespace nsfd
         for (unsigned int c = 0; g.mass[i] > 0. && c < dim; ++c)
           g.velocity[i * dim + c] += kick / g.mass[i] * given[i * dim + c];
     supports_.set_velocities(time, h, kick, g.force, given, g);
+    if (auto *absorbing = loads_.absorbing()) {
+      absorbing->set_drag(kick, g);
+      absorbing->brake(kick, before_.velocity, supports_.mask(), g);
+    }
     if (rigid_)
       rigid_->set_velocities(time, h, kick, g.force, given, supports_, g);
   }
@@ -303,6 +317,9 @@ namespace nsfd
     set_energies(kick, h, last, energies);
     std::fill(supports_.rows().begin(), supports_.rows().end(), 0.);
     points_.add_impulses(supports_.row_of_group(), supports_.rows());
+    if (const auto *absorbing = loads_.absorbing())
+      absorbing->add_impulses(kick, before_.velocity, g,
+                              supports_.row_of_group(), supports_.rows());
     if (large_)
       large_->add_impulses(supports_.row_of_group(), supports_.rows());
     energies.work += supports_.work(communicator_, kick, before_.velocity, g);

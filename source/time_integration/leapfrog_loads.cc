@@ -38,6 +38,8 @@ namespace nsfd
   {
     if (discretization_.loads().any())
       set(time, groups);
+    if (absorbing_)
+      absorbing_->gather(groups);
   }
 
   template <int dim>
@@ -69,6 +71,8 @@ namespace nsfd
   void LeapfrogLoads<dim>::gather(const std::size_t node,
                                   const CornerGroups<dim> &groups)
   {
+    if (absorbing_)
+      absorbing_->gather(groups);
     if (of_corners_.empty())
       return;
     of_groups_.resize(groups.force.size());

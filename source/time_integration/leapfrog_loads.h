@@ -2,6 +2,7 @@
 
 #include "leapfrog_pressure.h"
 
+#include "joined/absorbing_nodes.h"
 #include "joined/hanging_nodes.h"
 #include "joined/viscous_forces.h"
 
@@ -12,7 +13,8 @@ namespace nsfd
 {
   /**
    * What is given before a step of Leapfrog besides the elastic forces: loads
-   * by corner and by group of corners, and those of fluid in cracks.
+   * by corner and by group of corners, those of fluid in cracks, and absorbing
+   * sides.
    */
   template <int dim>
   class LeapfrogLoads
@@ -23,6 +25,7 @@ namespace nsfd
                   const JoinedMesh<dim> &mesh, const HangingNodes<dim> &hanging)
         : discretization_(discretization), mesh_(mesh), hanging_(hanging),
           cracks_(LeapfrogPressure<dim>::make(input, discretization, mesh)),
+          absorbing_(AbsorbingNodes<dim>::make(discretization, mesh, hanging)),
           extra_weights_(extra_weights(input, discretization))
     {
     }
@@ -44,6 +47,8 @@ namespace nsfd
     const std::vector<double> &of_groups() const { return of_groups_; }
     /** Null: there are none. */
     const LeapfrogPressure<dim> *cracks() const { return cracks_.get(); }
+    /** The same. */
+    AbsorbingNodes<dim> *absorbing() const { return absorbing_.get(); }
 
   private:
     /// of rigid bodies heavier than their cells: by corner, N
@@ -57,6 +62,7 @@ namespace nsfd
     const JoinedMesh<dim> &mesh_;
     const HangingNodes<dim> &hanging_;
     const std::unique_ptr<LeapfrogPressure<dim>> cracks_;
+    const std::unique_ptr<AbsorbingNodes<dim>> absorbing_;
     const Forces extra_weights_;
     std::vector<double> of_corners_, of_groups_; ///< empty: none
     std::vector<double> shares_;                 ///< see HangingNodes

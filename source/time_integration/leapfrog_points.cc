@@ -288,6 +288,7 @@ namespace nsfd
         at[ahead].prefetch(chain_);
       Node &node = *at;
       node.elastic[chain_].is_new |= is_new;
+      node.is_new |= is_new && !groups.drag.empty();
       if (node.is_new)
         nodes_.collect(node, prescribed, groups, chains_);
       if (!node.problem.points.empty() && !node.is_rigid &&

@@ -2,6 +2,7 @@
 
 #include "ghost_states.h"
 
+#include "discretization/loads.h"
 #include "nsfd/core/archive.h"
 #include "nsfd/scene/scene_input.h"
 
@@ -50,6 +51,7 @@ namespace nsfd
     energy.impact += balance.impact + bodies.impact;
     energy.viscous += balance.viscous + bodies.viscous;
     energy.plastic += bodies.plastic;
+    energy.absorbed += bodies.absorbed;
     energy.numerical += balance.numerical + bodies.numerical;
     energy.work += bodies.work + bodies.pressure_work;
     next.broken_area = old.broken_area + balance.broken;
@@ -89,6 +91,20 @@ namespace nsfd
     double scale = 4. * std::abs(energy.kinetic);
     if (rigid_ && large_) { // bodies at rest have no other energy
       scale = std::max(scale, 2. * rigid_->sizes().motion);
+      relate_defect(scale, next, report);
+    }
+    if (discretization_.loads().initial_stress()) {
+      // what holds the faces gives nothing, to the last bits of what it holds
+      const auto &g = *groups_;
+      const auto &loads = loads_.of_groups();
+      const double kick = (h + old.last_step) / 2.;
+      terms_.assign(g.force.size(), 0.);
+      for (std::size_t k = 0; k < terms_.size(); ++k)
+        if (const double m = g.mass[k / dim]; m > 0.) {
+          const double impulse = kick * (g.force[k] + loads[k]);
+          terms_[k] = impulse * impulse / m;
+        }
+      scale = std::max(scale, ghosts_.sum(g, terms_));
       relate_defect(scale, next, report);
     }
     const TakenStep step{old, next, h, scale, 0};

@@ -27,6 +27,7 @@ namespace nsfd
   {
     State state = initial_motion(input_, discretization_);
     set_jumps(discretization_, mesh_, state);
+    add_initial_jumps(input_, discretization_, all_, communicator_, state);
     release_zeros(state); // before there are more lists
     const auto &points = discretization_.points();
     set_points(input_, discretization_, all_, state);

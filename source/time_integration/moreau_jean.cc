@@ -22,7 +22,7 @@ namespace nsfd
         step_problem_(input, discretization, delassus, counters_),
         check_(input, [this](const std::size_t i) { return describe(i); })
   {
-    if (input.has_viscous_bodies())
+    if (input.has_viscous_bodies() || input.has_absorbing_sides())
       delassus.set_terms({input.time.theta, delassus.terms().kept_step});
   }
 

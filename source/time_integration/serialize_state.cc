@@ -69,7 +69,7 @@ namespace nsfd
     auto &e = s.energy;
     archive.numbers("energy", e.kinetic, e.elastic, e.cohesive, e.damage,
                     e.friction, e.viscous, e.plastic, e.impact, e.numerical,
-                    e.work);
+                    e.work, e.absorbed);
     archive.numbers("sums", s.initial_energy, s.largest_energy, s.penetration,
                     s.penetration_excess, s.rigid_drift,
                     s.positive_friction_work, s.broken_area, s.pressure_work);

@@ -7,6 +7,7 @@
 #include "delassus/joined_delassus.h"
 #include "delassus/velocity_solver.h"
 #include "discretization/discretization.h"
+#include "discretization/loads.h"
 
 #include <utility>
 #include <vector>
@@ -31,8 +32,9 @@ namespace nsfd
     StaticBonds(const Discretization<dim> &discretization,
                 JoinedDelassus<dim> &bonded, bool mean,
                 OneStepProblem<dim> &problem, LoadStepIterate<dim> &iterate)
-        : discretization_(discretization), bonded_(bonded), bulk_(bonded),
-          mean_(mean), problem_(problem), iterate_(iterate),
+        : discretization_(discretization), bonded_(bonded),
+          bulk_(bonded, discretization.loads().initial_stress()), mean_(mean),
+          problem_(problem), iterate_(iterate),
           nodes_(dynamic_cast<VelocitySolver &>(bonded))
     {
     }

@@ -21,7 +21,8 @@ namespace nsfd
         {"viscous", &EnergyLines::viscous, Colour::olive},
         {"plastic", &EnergyLines::plastic, Colour::green},
         {"impact", &EnergyLines::impact, Colour::pink},
-        {"numerical", &EnergyLines::numerical, Colour::grey}};
+        {"numerical", &EnergyLines::numerical, Colour::grey},
+        {"absorbed", &EnergyLines::absorbed, Colour::ink}};
     return lines;
   }
 

@@ -143,7 +143,7 @@ namespace test_checkpoint
     std::uintmax_t n_bytes = 0;
     std::vector<HistoryRow> rows(3);
     {
-      HistoryFile file(path, {"left, or right"}, 2);
+      HistoryFile file(path, {{"left, or right"}, 2});
       for (unsigned int k = 0; k < rows.size(); ++k) {
         HistoryRow &row = rows[k];
         row.step = k + 1;
@@ -158,7 +158,9 @@ namespace test_checkpoint
           n_bytes = file.n_bytes();
       }
     }
-    const auto read = HistoryFile::read(path, 2, n_bytes);
+    const HistoryFile::Columns columns = {{"left, or right"}, 2},
+                               others = {{"left", "right"}, 2};
+    const auto read = HistoryFile::read(path, columns, n_bytes);
     ASSERT_EQ(read.size(), 2u);
     for (unsigned int k = 0; k < 2; ++k) {
       EXPECT_EQ(read[k].step, rows[k].step);
@@ -169,10 +171,10 @@ namespace test_checkpoint
       EXPECT_EQ(read[k].fragments, rows[k].fragments);
       EXPECT_EQ(read[k].reactions, rows[k].reactions);
     }
-    EXPECT_THROW(HistoryFile::read(path, 2, 10000), std::runtime_error);
-    EXPECT_THROW(HistoryFile::read(path, 4, n_bytes), std::runtime_error);
+    EXPECT_THROW(HistoryFile::read(path, columns, 10000), std::runtime_error);
+    EXPECT_THROW(HistoryFile::read(path, others, n_bytes), std::runtime_error);
     const auto whole = fs::file_size(path);
-    HistoryFile cut(path, {"left, or right"}, 2, n_bytes);
+    HistoryFile cut(path, columns, n_bytes);
     EXPECT_EQ(fs::file_size(path), n_bytes);
     cut.write(rows[2]);
     EXPECT_EQ(fs::file_size(path), whole);

@@ -6,18 +6,20 @@ namespace output_checks::test_output
 
   TEST(HistoryFile, HeaderIsTheAgreedOne)
   {
-    EXPECT_EQ(HistoryFile::header({"left", "top"}, 2),
+    EXPECT_EQ(HistoryFile::header({{"left", "top"}, 2}),
               "step,time,time_step,kinetic,elastic,cohesive,damage,friction,"
               "viscous,plastic,impact,numerical,work,ledger_defect,"
               "broken_area,fragments,active,newton,krylov,residual,"
               "reaction_left_x,reaction_left_y,reaction_top_x,reaction_top_y");
-    EXPECT_EQ(n_times(HistoryFile::header({"a"}, 3), "reaction_a_"), 3u);
+    EXPECT_EQ(n_times(HistoryFile::header({{"a"}, 3}), "reaction_a_"), 3u);
+    EXPECT_EQ(HistoryFile::header({{"a"}, 2, true}),
+              HistoryFile::header({{"a"}, 2}) + ",absorbed");
   }
 
   TEST(HistoryFile, RowsAreOnDiskAtOnceAndReadBackExactly)
   {
     const std::string path = scratch("history.csv");
-    HistoryFile file(path, {"left"}, 2);
+    HistoryFile file(path, {{"left"}, 2});
     file.write(history_row(7));
 
     std::istringstream text(read(path));
@@ -35,9 +37,9 @@ namespace output_checks::test_output
 
   TEST(HistoryFile, RefusesWhatItCannotWrite)
   {
-    EXPECT_THROW(HistoryFile("/no/such/folder/history.csv", {}, 2),
+    EXPECT_THROW(HistoryFile("/no/such/folder/history.csv", {{}, 2}),
                  std::runtime_error);
-    HistoryFile file(scratch("history_2.csv"), {}, 2);
+    HistoryFile file(scratch("history_2.csv"), {{}, 2});
     EXPECT_THROW(file.write(history_row(1)), std::logic_error);
   }
 

@@ -146,6 +146,10 @@ namespace nsfd
     /** The law with two damage scalars that this is, or null. */
     virtual const MixedLaw *mixed() const { return nullptr; }
 
+    /** Default of s in the weight (1 - beta)^s of friction; 0: friction acts in
+        full from the start, and holds what is intact as well. */
+    virtual double friction_exponent() const { return 1.; }
+
     /** Damage takes time: delayed_opening() and not the opening itself. */
     virtual bool rate_dependent() const { return false; }
 

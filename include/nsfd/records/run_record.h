@@ -15,16 +15,16 @@ namespace nsfd
 {
   /**
    * The energy lines of a run, in J (J/m of depth in two dimensions). `work`
-   * is the work of loads (pressure in cracks is one) and prescribed motion
-   * since t = 0; the dissipated
-   * lines are sums since t = 0. Closed energy balance: kinetic + elastic +
-   * cohesive
-   * + dissipated lines - initial energy - work = 0.
+   * is the work of loads (pressure in cracks and an initial stress are such)
+   * and prescribed motion since t = 0; the dissipated lines are sums since t =
+   * 0, `absorbed` is what left through absorbing sides. Closed energy balance:
+   * kinetic + elastic + cohesive + dissipated lines - initial energy - work
+   * = 0.
    */
   struct EnergyLines {
     double kinetic = 0., elastic = 0., cohesive = 0.;
     double damage = 0., friction = 0., viscous = 0., plastic = 0., impact = 0.,
-           numerical = 0.;
+           numerical = 0., absorbed = 0.;
     double work = 0.;
   };
 

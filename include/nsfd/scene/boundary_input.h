@@ -20,5 +20,6 @@ namespace nsfd
     Expression pressure; ///< Pa, positive pushes on the body
     bool has_pressure = false;
     bool exact_motion = false; ///< of the verification case
+    bool absorbs = false;      ///< waves that come in along the normal
   };
 } // namespace nsfd

@@ -4,6 +4,7 @@
 #include "nsfd/cohesive_laws/scatter.h"
 #include "nsfd/parameters/expression.h"
 #include "nsfd/scene/sliding_input.h"
+#include "nsfd/scene/stress_input.h"
 #include "nsfd/scene/where_input.h"
 
 #include <cmath>
@@ -50,6 +51,9 @@ namespace nsfd
     /// Pa, of x, y, z, t: on the crack faces of points with beta <= threshold
     std::optional<Expression> crack_pressure;
     double pressure_threshold = 0.;
+    /// whose traction the faces carry at t = 0; components that are not given
+    /// are those of the cells
+    StressInput initial_stress;
     /** "Interface: NAME", or of the obstacle. */
     std::string section() const
     {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "nsfd/parameters/expression.h"
+#include "nsfd/scene/stress_input.h"
 #include "nsfd/scene/where_input.h"
 
 #include <array>
@@ -84,6 +85,7 @@ namespace nsfd
     /// per component, expressions of x, y, z (t = 0); default 0
     std::array<Expression, 3> initial_displacement, initial_velocity;
     std::array<Expression, 3> body_force; ///< N/m^3, of x, y, z, t
-    std::optional<PlasticInput> plastic;  ///< of materials with history
+    StressInput initial_stress; ///< where there is no strain; 0 if not given
+    std::optional<PlasticInput> plastic; ///< of materials with history
   };
 } // namespace nsfd

@@ -89,6 +89,25 @@ namespace nsfd
       return false;
     }
 
+    /** Of cells or of faces. */
+    bool has_initial_stress() const
+    {
+      for (const auto &material : materials)
+        if (material.initial_stress.is_given())
+          return true;
+      for (const auto &block : interfaces)
+        if (block.initial_stress.is_given())
+          return true;
+      return false;
+    }
+    bool has_absorbing_sides() const
+    {
+      for (const auto &boundary : boundaries)
+        if (boundary.absorbs)
+          return true;
+      return false;
+    }
+
     bool has_bonded_faces() const
     {
       for (const auto &block : interfaces)

@@ -173,15 +173,17 @@ namespace nsfd
                     [](const auto &material) { return material.rigid; }))
       reader.error("type", "no material is elastic: no energy is released");
     for (const MaterialInput &material : scene.materials)
-      if (material.graded || material.plastic || material.is_viscous())
+      if (material.graded || material.plastic || material.is_viscous() ||
+          material.initial_stress.is_given())
         reader.error(
             "type",
             fmt::format("contours of the energy release rate agree in uniform "
                         "elastic bodies; `Material: {}` {}",
                         material.name,
-                        material.graded    ? "differs from place to place"
-                        : material.plastic ? "flows"
-                                           : "is viscous"),
+                        material.graded         ? "differs from place to place"
+                        : material.plastic      ? "flows"
+                        : material.is_viscous() ? "is viscous"
+                                                : "has an initial stress"),
             "remove the block; `type = crack` gives length and speed");
   }
 
