@@ -21,8 +21,8 @@ namespace nsfd
      * velocities, which
      * knows nothing of W: where W is singular, as round a node that four faces
      * share, the others may not reach the tolerance. It comes first where most
-     * points join deformable bodies, whose nodes it takes for one where they
-     * hold, and no factor of a former problem is of use.
+     * points are joints of deformable bodies, whose nodes it takes for one, and
+     * no factor of a former problem is of use.
      * Every hand-over is in the report. Steps in which points soften are not
      * handed over: a shorter step is their cure, until four cuts have shown
      * that it is none.
@@ -58,8 +58,7 @@ namespace nsfd
         const std::vector<double> start(impulse);
         SolverReport report = multipliers().solve(
             problem, delassus, energy_scale, control, impulse, evaluation);
-        if (!report.converged &&
-            !waits_for_cuts(problem, delassus, control, evaluation))
+        if (!report.converged)
           hand_over([&] { return others(false); }, "dual newton", &start,
                     control, impulse, evaluation, report);
         return report;
@@ -113,8 +112,10 @@ namespace nsfd
               name, from_start ? &start : nullptr, control, impulse, evaluation,
               report);
         };
-        if (!report.converged &&
-            waits_for_cuts(problem, delassus, control, evaluation)) {
+        const bool early =
+            control.idle_rounds < (SolverControl().idle_rounds << 4);
+        if (!report.converged && early &&
+            all.any(softens(problem, evaluation))) {
           if (brief)
             go_on(*first, "dual newton", false);
           return report;
@@ -135,45 +136,29 @@ namespace nsfd
         return *last_;
       }
 
-      /** Points soften, and a shorter step was not tried often. Collective. */
-      static bool waits_for_cuts(const OneStepProblem<dim> &problem,
-                                 const DelassusOperator<dim> &delassus,
-                                 const SolverControl &control,
-                                 const LawEvaluation<dim> &evaluation)
-      {
-        return control.idle_rounds < (SolverControl().idle_rounds << 4) &&
-               delassus.communicator().any(softens(problem, evaluation));
-      }
-
-      /** Most points join deformable bodies, for good or by cohesion, and these
-          have a factor once the joints are gone. Collective. */
+      /** Most points are joints of deformable bodies, which have a factor once
+          the joints are gone. Collective. */
       static bool holds_nodes(const OneStepProblem<dim> &problem,
                               const DelassusOperator<dim> &delassus)
       {
         const auto &points = delassus.points();
         const auto &bodies = delassus.bodies();
         const std::size_t n = owned_acting(problem);
-        const Communicator &all = delassus.communicator();
-        const auto n_dofs = all.sum_integer(bodies.n_dofs());
-        // no nodes are one where faces soften: the factor is that of all cells
-        constexpr unsigned int small_factor = 1000;
-        const bool cohesion_joins = dim == 2 || n_dofs <= small_factor;
-        unsigned long long n_joins = 0;
+        unsigned long long n_held = 0;
         for (std::size_t a = 0; a < n; ++a) {
           const std::size_t i = problem.acting[a];
-          bool joins =
-              is_held(problem, i) ||
-              (cohesion_joins && (problem.kind[i] == PointKind::cohesive ||
-                                  problem.kind[i] == PointKind::rigid));
+          bool joins = is_held(problem, i);
           for (const int b : points.faces[points.face_of[i]].bodies)
             if (b >= 0)
               joins = joins &&
                       !bodies.classes[bodies.class_of[std::size_t(b)]].rigid;
-          n_joins += joins;
+          n_held += joins;
         }
+        const Communicator &all = delassus.communicator();
         // of 2^dim cells round a node one unknown is left
-        return 2 * all.sum_integer(n_joins) > all.sum_integer(n) &&
-               n_dofs <= (10ull << dim) * largest_factor<dim>;
+        return 2 * all.sum_integer(n_held) > all.sum_integer(n) &&
+               all.sum_integer(bodies.n_dofs()) <=
+                   (10ull << dim) * largest_factor<dim>;
       }
 
       /** Of bodies that share nodes. */
