@@ -1,6 +1,8 @@
 #include "local_problem.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace nsfd::local
 {
@@ -36,6 +38,12 @@ namespace nsfd::local
             square += start_[c] * start_[c];
         }
         slip_start_ = std::sqrt(square);
+        // round-off of a slip of 0 has no direction
+        if (slip_start_ <= round_off * std::max(damage.history().opening,
+                                                damage.final_opening())) {
+          slip_start_ = 0.;
+          std::fill(start_.begin() + 1, start_.end(), 0.);
+        }
       }
 
       /** Where the step ends if its mean traction is that of @p end. */
@@ -59,6 +67,7 @@ namespace nsfd::local
       }
 
     private:
+      static constexpr double round_off = 1e-14; ///< of the last opening
       const PointDamage<dim> &damage_;
       LocalProblem<dim> &local_;
       const OneStepProblem<dim> &problem_;

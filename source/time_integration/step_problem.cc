@@ -299,13 +299,15 @@ namespace nsfd
                                     SolverReport &report)
   {
     constexpr double most = 1e3, last_bits = 1e-15;
+    // where nothing moves, all impulses are round-off
+    const double harmless = std::max(most * energy_scale, control.row_energy);
     const Communicator &all = delassus_.communicator();
     const auto held = [&] {
       return row_work(problem, all, evaluation.velocity, impulse).impulses;
     };
     const double present = held();
     if (!std::isfinite(control.row_energy) || // statics
-        !(present > most * energy_scale))
+        !(present > harmless))
       return;
     const std::vector<double> before(impulse);
     const std::size_t n = impulse.size();
@@ -341,7 +343,7 @@ namespace nsfd
     const SolverReport again = solver.solve(problem, delassus_, energy_scale,
                                             control, impulse, evaluation);
     report.go_on_with(again);
-    report.converged = again.converged && !(held() > most * energy_scale);
+    report.converged = again.converged && !(held() > harmless);
   }
 
   /** By Newton's method, if it comes closer. */

@@ -226,9 +226,13 @@ namespace node_test
     {
       const std::size_t n = n_points();
       const double range = range_of(law()), strength = law().strength();
-      const double slope = std::isfinite(law().steepest_softening())
-                               ? law().steepest_softening()
-                               : strength / range;
+      const double one_way = std::isfinite(law().steepest_softening())
+                                 ? law().steepest_softening()
+                                 : strength / range,
+                   shear = law().stiffness_ratio();
+      // the largest eigenvalue of the softening in opening and slip
+      const double slope =
+          one_way * (law().adds_openings() ? 1. + shear : std::max(1., shear));
       // a bound of the largest eigenvalue of w W
       std::vector<double> sum(mass.size());
       for (std::size_t i = 0; i < n; ++i)
@@ -294,9 +298,12 @@ namespace node_test
         problem.opening_max[i] = std::max(problem.opening_max[i], d);
         if (!problem.slip_max.empty())
           problem.slip_max[i] = d * random();
+        // no farther than the largest opening, in which slip may count more
+        const double slip = d / std::max(1., std::sqrt(law().shear_weight()));
         for (int c = 0; c < dim; ++c)
-          offset[i][c] =
-              random() < 0.3 ? 0. : 0.5 * d * random(c ? -1. : 0., 1.);
+          offset[i][c] = random() < 0.3
+                             ? 0.
+                             : 0.5 * (c ? slip : d) * random(c ? -1. : 0., 1.);
       }
       old_jump_[i] = offset[i];
     }

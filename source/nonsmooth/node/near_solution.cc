@@ -45,7 +45,8 @@ namespace nsfd
     const Interaction &interaction =
         problem.interactions[problem.interaction[i]];
     LocalProblem<dim> here{problem, i, local, R, R};
-    if (interaction.plateau || here.lifts())
+    // a law that adds openings has no secants
+    if (interaction.plateau || here.lifts() || interaction.law->adds_openings())
       return false;
     const double low = problem.opening_max[i];
     double x = end.opening;

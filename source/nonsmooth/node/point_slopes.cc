@@ -195,7 +195,7 @@ namespace nsfd
                        (interaction.wear > 0. || !problem.dilatancy.empty());
     const bool has_law = problem.kind[i] == PointKind::cohesive ||
                          problem.kind[i] == PointKind::rigid;
-    if (lifts) {
+    if (lifts || (has_law && interaction.law->adds_openings())) {
       difference_slopes<dim>(problem, i, local, R, solution, slopes);
       return;
     }
