@@ -67,7 +67,7 @@ namespace nsfd::local
       }
 
     private:
-      static constexpr double round_off = 1e-14; ///< of the last opening
+      static constexpr double round_off = 1e-15; ///< of the last opening
       const PointDamage<dim> &damage_;
       LocalProblem<dim> &local_;
       const OneStepProblem<dim> &problem_;
