@@ -1,8 +1,6 @@
-#include "nsfd/cohesive_laws/cohesive_law.h"
-#include "nsfd/parameters/section_reader.h"
+#include "linear_softening.h"
 
-#include <algorithm>
-#include <limits>
+#include "nsfd/parameters/section_reader.h"
 
 namespace nsfd
 {
@@ -17,7 +15,7 @@ namespace nsfd
    * literal form (5) of [AM06] keeps the traction while closing.) The
    * interface starts to open at the stress |<t_N>_+ n + t_T / a| = R_max.
    */
-  class CamachoOrtiz final : public CohesiveLaw
+  class CamachoOrtiz final : public LinearSoftening
   {
   public:
     explicit CamachoOrtiz(SectionReader &reader)
@@ -31,61 +29,7 @@ namespace nsfd
       shear_weight_ = a * a;
     }
 
-    bool extrinsic() const override { return true; }
-
-    double normal_stiffness() const override
-    {
-      return std::numeric_limits<double>::infinity();
-    }
-
-    double stiffness_ratio() const override { return shear_weight_; }
-    double shear_weight() const override { return shear_weight_; }
-
-    double beta(const double d) const override
-    {
-      return d < critical_opening_ ? 1. - d / critical_opening_ : 0.;
-    }
-
-    double traction(const double d) const override
-    {
-      return strength_ * beta(d);
-    }
-
-    double energy(const double d) const override
-    {
-      if (d >= critical_opening_)
-        return toughness();
-      return strength_ * d * (1. - 0.5 * d / critical_opening_);
-    }
-
-    double energy_increment(const double d0, const double d1) const override
-    {
-      // the way itself, and not what is left of it, keeps its digits
-      const double a = std::min(d0, critical_opening_),
-                   b = std::min(d1, critical_opening_);
-      return strength_ * (b - a) *
-             ((critical_opening_ - a) + (critical_opening_ - b)) /
-             (2. * critical_opening_);
-    }
-
-    double elastic_limit() const override { return 0.; }
-    double peak_opening() const override { return 0.; }
-    double final_opening() const override { return critical_opening_; }
-    double strength() const override { return strength_; }
-
-    double toughness() const override
-    {
-      return 0.5 * strength_ * critical_opening_;
-    }
-
-    double steepest_softening() const override
-    {
-      return strength_ / critical_opening_;
-    }
-
   private:
-    double strength_, critical_opening_, shear_weight_;
-
     double read_critical_opening(SectionReader &reader) const
     {
       const bool has_toughness = reader.has("toughness");

@@ -1,8 +1,6 @@
-#include "nsfd/cohesive_laws/cohesive_law.h"
-#include "nsfd/cohesive_laws/law_input.h"
+#include "linear_softening.h"
 
-#include <algorithm>
-#include <limits>
+#include "nsfd/cohesive_laws/law_input.h"
 
 namespace nsfd
 {
@@ -19,7 +17,7 @@ namespace nsfd
    * is dissipated: G = s delta / 2 in opening and in shear. Friction is that of
    * the reaction r_N + beta s of the contact, at all beta.
    */
-  class CollinsCraft final : public CohesiveLaw
+  class CollinsCraft final : public LinearSoftening
   {
   public:
     explicit CollinsCraft(SectionReader &reader)
@@ -34,57 +32,12 @@ namespace nsfd
       shear_weight_ = gamma * gamma;
     }
 
-    bool extrinsic() const override { return true; }
     bool adds_openings() const override { return true; }
-
-    double normal_stiffness() const override
-    {
-      return std::numeric_limits<double>::infinity();
-    }
-    double stiffness_ratio() const override { return shear_weight_; }
-    double shear_weight() const override { return shear_weight_; }
-
-    double beta(const double d) const override
-    {
-      return d < critical_opening_ ? 1. - d / critical_opening_ : 0.;
-    }
-
-    double traction(const double d) const override
-    {
-      return strength_ * beta(d);
-    }
 
     double energy(const double d) const override
     {
       return energy_increment(0., d);
     }
-
-    double energy_increment(const double d0, const double d1) const override
-    {
-      const double a = std::min(d0, critical_opening_),
-                   b = std::min(d1, critical_opening_);
-      return strength_ * (b - a) *
-             ((critical_opening_ - a) + (critical_opening_ - b)) /
-             (2. * critical_opening_);
-    }
-
-    double elastic_limit() const override { return 0.; }
-    double peak_opening() const override { return 0.; }
-    double final_opening() const override { return critical_opening_; }
-    double strength() const override { return strength_; }
-
-    double toughness() const override
-    {
-      return 0.5 * strength_ * critical_opening_;
-    }
-
-    double steepest_softening() const override
-    {
-      return strength_ / critical_opening_;
-    }
-
-  private:
-    double strength_, critical_opening_, shear_weight_;
   };
 
   NSFD_REGISTER(CohesiveLawRegistry, CollinsCraft, "collins-craft",

@@ -1,8 +1,8 @@
-#include "nsfd/cohesive_laws/cohesive_law.h"
+#include "linear_softening.h"
+
 #include "nsfd/parameters/section_reader.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace nsfd
 {
@@ -22,7 +22,7 @@ namespace nsfd
    *   d^2 = <u_N>_+^2 + r^2 |u_T|^2,   T = R_max (1 - d / (r D_c)),
    *   G = (mu_s - mu_d) sigma_n D_c / 2.
    */
-  class SlipWeakening final : public CohesiveLaw
+  class SlipWeakening final : public LinearSoftening
   {
   public:
     explicit SlipWeakening(SectionReader &reader)
@@ -53,66 +53,13 @@ namespace nsfd
                       ? reader.number(name, "", units::pressure,
                                       Range::positive(), text)
                       : cohesion;
-      ratio_ = cohesion / strength_;
-      critical_opening_ = ratio_ * slip;
+      // r: strength in slip over that in opening
+      const double ratio = cohesion / strength_;
+      critical_opening_ = ratio * slip;
+      shear_weight_ = ratio * ratio;
     }
 
-    bool extrinsic() const override { return true; }
     double friction_exponent() const override { return 0.; }
-
-    double normal_stiffness() const override
-    {
-      return std::numeric_limits<double>::infinity();
-    }
-
-    double stiffness_ratio() const override { return ratio_ * ratio_; }
-    double shear_weight() const override { return ratio_ * ratio_; }
-
-    double beta(const double d) const override
-    {
-      return d < critical_opening_ ? 1. - d / critical_opening_ : 0.;
-    }
-
-    double traction(const double d) const override
-    {
-      return strength_ * beta(d);
-    }
-
-    double energy(const double d) const override
-    {
-      if (d >= critical_opening_)
-        return toughness();
-      return strength_ * d * (1. - 0.5 * d / critical_opening_);
-    }
-
-    double energy_increment(const double d0, const double d1) const override
-    {
-      // the way itself, and not what is left of it, keeps its digits
-      const double a = std::min(d0, critical_opening_),
-                   b = std::min(d1, critical_opening_);
-      return strength_ * (b - a) *
-             ((critical_opening_ - a) + (critical_opening_ - b)) /
-             (2. * critical_opening_);
-    }
-
-    double elastic_limit() const override { return 0.; }
-    double peak_opening() const override { return 0.; }
-    double final_opening() const override { return critical_opening_; }
-    double strength() const override { return strength_; }
-
-    double toughness() const override
-    {
-      return 0.5 * strength_ * critical_opening_;
-    }
-
-    double steepest_softening() const override
-    {
-      return strength_ / critical_opening_;
-    }
-
-  private:
-    double strength_, critical_opening_;
-    double ratio_; ///< r: strength in slip over that in opening
   };
 
   NSFD_REGISTER(CohesiveLawRegistry, SlipWeakening, "slip-weakening",

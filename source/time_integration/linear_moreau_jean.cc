@@ -18,6 +18,32 @@
 
 namespace nsfd
 {
+  namespace
+  {
+    /**
+     * Sum of F^2/m over the nodes of the cells, F what the initial stress does
+     * to each of them by itself, W/s: h^2 times this is what bodies of common
+     * nodes do not get because their cells hold each other, to its last bits.
+     * Collective.
+     */
+    template <int dim>
+    double scale_of_stress(const Discretization<dim> &discretization,
+                           const Communicator &communicator)
+    {
+      const auto &cells = discretization.cells();
+      const auto &forces = discretization.loads().initial_stress()->forces();
+      std::vector<double> terms(forces.size(), 0.);
+      for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
+        const BodyClass &body = cells.body_class(b);
+        const std::size_t first = cells.first_node[b] * dim;
+        for (unsigned int i = 0; !body.undeformed && i < body.n_dofs; ++i)
+          terms[first + i] =
+              forces[first + i] * forces[first + i] / body.mass(i, i);
+      }
+      return communicator.sum(terms);
+    }
+  } // namespace
+
   template <int dim>
   LinearMoreauJean<dim>::LinearMoreauJean(
       const SceneInput &input, const Discretization<dim> &discretization,
@@ -33,6 +59,8 @@ namespace nsfd
           delassus, discretization.loads().initial_stress());
       bulk_->mark(breakable_faces(this->problem_, delassus.points()));
     }
+    if (bonded && discretization.loads().initial_stress())
+      stress_scale_ = scale_of_stress(discretization, delassus.communicator());
   }
 
   template <int dim>
@@ -122,32 +150,6 @@ namespace nsfd
                                             : nullptr);
   }
 
-  namespace
-  {
-    /**
-     * Sum of F^2/m over the nodes of the cells, F what the initial stress does
-     * to each of them by itself, W/s: h^2 times this is what bodies of common
-     * nodes do not get because their cells hold each other, to its last bits.
-     * Collective.
-     */
-    template <int dim>
-    double scale_of_stress(const Discretization<dim> &discretization,
-                           const Communicator &communicator)
-    {
-      const auto &cells = discretization.cells();
-      const auto &forces = discretization.loads().initial_stress()->forces();
-      std::vector<double> terms(forces.size(), 0.);
-      for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
-        const BodyClass &body = cells.body_class(b);
-        const std::size_t first = cells.first_node[b] * dim;
-        for (unsigned int i = 0; !body.undeformed && i < body.n_dofs; ++i)
-          terms[first + i] =
-              forces[first + i] * forces[first + i] / body.mass(i, i);
-      }
-      return communicator.sum(terms);
-    }
-  } // namespace
-
   template <int dim>
   StepReport LinearMoreauJean<dim>::advance(const State &old, const double h,
                                             State &next,
@@ -203,14 +205,9 @@ namespace nsfd
         this->free_motion_.loads(), h, old, next, elastic_forces_.get());
     this->balance_->account(this->problem_, evaluation, origins, bodies, old,
                             next, report);
-    double scale = energy_scale;
-    if (bonded_ && this->discretization_.loads().initial_stress()) {
-      const double held = h * h *
-                          scale_of_stress(this->discretization_,
-                                          this->delassus_.communicator());
-      scale = std::max(scale, held);
-      report.changes.impulses += held;
-    }
+    const double held = h * h * stress_scale_,
+                 scale = std::max(energy_scale, held);
+    report.changes.impulses += held;
     const TakenStep step{old, next, h, scale, evaluation.worst_point};
     this->check_.check_balance(step, report);
     relate_defect(scale, next, report);

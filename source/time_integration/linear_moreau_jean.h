@@ -48,6 +48,8 @@ namespace nsfd
     JoinedDelassus<dim> *bonded_;             ///< or null
     NodeSupports<dim> supports_;              ///< of bodies that share nodes
     std::unique_ptr<BulkTraction<dim>> bulk_; ///< or null: no bonded faces
+    /// of what holds an initial stress by common nodes, W/s; 0: nothing does
+    double stress_scale_ = 0.;
     std::unique_ptr<ElasticForces<dim>> elastic_forces_; ///< of explicit steps
     std::unique_ptr<LawEvaluation<dim>> evaluation_;     ///< of the last step
   };

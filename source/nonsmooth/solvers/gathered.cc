@@ -28,9 +28,10 @@ namespace nsfd
       template <typename T>
       void put(const std::vector<T> &values)
       {
+        static_assert(std::is_trivially_copyable_v<T>);
         put(values.size());
-        for (const T &value : values)
-          put(value);
+        const char *first = reinterpret_cast<const char *>(values.data());
+        bytes_.insert(bytes_.end(), first, first + values.size() * sizeof(T));
       }
       void put(const Block &block)
       {
@@ -51,8 +52,12 @@ namespace nsfd
         std::size_t size;
         get(size);
         values.resize(size);
-        for (T &value : values)
-          get(value);
+        const char *first = bytes_.data() + next_;
+        next_ += size * sizeof(T);
+        if (next_ > bytes_.size())
+          throw std::out_of_range("Package: it ends early");
+        std::copy_n(first, size * sizeof(T),
+                    reinterpret_cast<char *>(values.data()));
       }
       void get(Block &block)
       {
