@@ -33,6 +33,27 @@ subsection Material: fibres
   set axial shear modulus      = 0.5
   set density                  = 1
 end
+subsection Material: crystals
+  set model       = cubic
+  set C11         = 168.4
+  set C12         = 121.4
+  set C44         = 75.4
+  set density     = 1
+  set orientation = random
+end
+subsection Material: wood
+  set model       = orthotropic
+  set E1          = 12
+  set E2          = 0.8
+  set E3          = 0.5
+  set nu12        = 0.4
+  set nu13        = 0.3
+  set nu23        = 0.5
+  set G12         = 0.7
+  set G13         = 0.6
+  set G23         = 0.05
+  set density     = 1
+end
 END
 ./nsfd --list | awk '
   /^[^ ]/ { kind = $0 }
@@ -423,7 +444,7 @@ END
   interfaces "$scratch/parts.prm" own
   cat <<'END'
 
-## Obstacles, rigid and transversely isotropic materials
+## Obstacles, rigid and anisotropic materials
 
 END
   sections "$scratch/parts.prm" '(Obstacle|Material): .*'

@@ -36,6 +36,11 @@ namespace nsfd
     return extrinsic() ? traction(d) / d : beta(d) * normal_stiffness();
   }
 
+  double CohesiveLaw::healed_opening(const double d_m, double, double) const
+  {
+    return d_m;
+  }
+
   double CohesiveLaw::delayed_opening(const double d_m, const double d,
                                       const double) const
   {

@@ -64,6 +64,24 @@ namespace nsfd
       /** Energy w g(b) that is spent. */
       double spent(const double b) const { return energy_ * g_.value(1. - b); }
 
+      /** The intensity after db/dt = -g'(b), of the time 1, from @p b. */
+      double healed(double b, const double time) const
+      {
+        // beyond, what has not come to 1 rests where g' is 0
+        constexpr double long_time = 40.;
+        constexpr unsigned int n_steps = 64;
+        const double h = std::min(time, long_time) / n_steps;
+        const auto rate = [&](const double x) {
+          return x < 1. ? std::max(0., g_.first(1. - x)) : 0.;
+        };
+        for (unsigned int k = 0; k < n_steps && b < 1.; ++k) {
+          const double k1 = rate(b), k2 = rate(b + h / 2. * k1),
+                       k3 = rate(b + h / 2. * k2), k4 = rate(b + h * k3);
+          b += h / 6. * (k1 + 2. * k2 + 2. * k3 + k4);
+        }
+        return std::min(1., b);
+      }
+
       /** The driving force chi = d psi / d b at the opening @p d. */
       double driving_force(const double b, const double d) const
       {
@@ -232,7 +250,9 @@ namespace nsfd
    *
    * at once from b to the next such place if that falls with b. f = b^2 and
    * g = 1 - b is the adhesion of Raous, Cangemi and Cocu, f = b and g = 1 - b
-   * perfectly brittle.
+   * perfectly brittle. With a healing time tau the intensity grows again where
+   * the face is pressed and chi = w g'(b) < 0: db/dt = -g'(b) min(1,
+   * p/p_h)/tau.
    */
   class Fremond final : public CohesiveLaw
   {
@@ -247,6 +267,7 @@ namespace nsfd
       viscosity_ = reader.number("damage viscosity", "0",
                                  units::damage_viscosity, Range::non_negative(),
                                  "Of the intensity, J s/m^2; 0: none");
+      healing_ = laws::read_healing(reader);
       const PowerSeries f =
           read_function(reader, "stiffness function", "beta^2",
                         "Of the intensity beta: 0 at 0, 1 at 1, rising", false);
@@ -301,6 +322,18 @@ namespace nsfd
 
     bool rate_dependent() const override { return viscosity_ > 0.; }
 
+    bool heals() const override { return healing_.time > 0.; }
+
+    double healed_opening(const double d_m, const double pressure,
+                          const double time) const override
+    {
+      if (!heals() || d_m <= elastic_limit())
+        return d_m;
+      const double before = std::isinf(d_m) ? 0. : curve_.intensity(d_m),
+                   b = curve_.healed(before, healing_.rate(pressure) * time);
+      return b > before ? std::min(d_m, curve_.opening_at(b)) : d_m;
+    }
+
     /**
      * With d held, y = ln(b - b_end) goes at the smooth rate chi / (eta (b -
      * b_end)): the time is integrated over y until it is used up.
@@ -337,6 +370,7 @@ namespace nsfd
 
   private:
     double stiffness_, energy_, stiffness_ratio_, viscosity_;
+    laws::Healing healing_;
     AdhesionCurve curve_;
     double peak_ = 0., peak_intensity_ = 1., steepest_ = 0.;
   };
@@ -350,5 +384,7 @@ namespace nsfd
                 "stiffness = 2e12; adhesion energy = 8 J/m^2; "
                 "stiffness function = beta; damage viscosity = 0",
                 "stiffness = 2e12; adhesion energy = 8 J/m^2; "
-                "damage viscosity = 0.01");
+                "damage viscosity = 0.01",
+                "stiffness = 2e12; adhesion energy = 8 J/m^2; "
+                "healing time = 1 ms");
 } // namespace nsfd

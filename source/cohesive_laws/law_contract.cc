@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace nsfd::law_contract
 {
@@ -288,6 +289,34 @@ namespace nsfd::law_contract
     return result;
   }
 
+  namespace
+  {
+    // What heals closes down to the elastic limit, in any parts of the time.
+    void healing_adds_up(const CohesiveLaw &law, Trial &trial)
+    {
+      const auto after = [&](const double d, const double time) {
+        return law.healed_opening(d, law.strength(), time);
+      };
+      double time = 1.; // s, in which some of it heals
+      for (unsigned int k = 0;
+           k < 200 && after(std::numeric_limits<double>::infinity(), time) <=
+                          1.01 * law.elastic_limit();
+           ++k)
+        time /= 2.;
+      for (const double d : samples(law)) {
+        const double once = after(d, time),
+                     twice = after(after(d, time / 3.), 2. / 3. * time);
+        trial.demand(once <= d && (once == d || once >= law.elastic_limit()),
+                     "an opening of {:.9g} m heals to {:.9g} m", d, once);
+        trial.near(twice, once, 1e-6 * once,
+                   at("healing in two parts of the time", d));
+        trial.demand(law.healed_opening(d, law.strength() / 2., time) >=
+                         once * (1. - 1e-12),
+                     "half of the pressure heals more at d = {:.9g} m", d);
+      }
+    }
+  } // namespace
+
   std::vector<Promise> promises(const CohesiveLaw &law)
   {
     using Try = void (*)(const CohesiveLaw &, Trial &);
@@ -303,6 +332,8 @@ namespace nsfd::law_contract
     else
       all.emplace_back("a potential means one work on all ways",
                        potential_means_one_work);
+    if (law.heals())
+      all.emplace_back("healing adds up over time", healing_adds_up);
     std::vector<Promise> result;
     for (const auto &[text, attempt] : all) {
       Trial trial;

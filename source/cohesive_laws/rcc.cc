@@ -1,4 +1,5 @@
 #include "nsfd/cohesive_laws/cohesive_law.h"
+#include "nsfd/cohesive_laws/law_input.h"
 #include "nsfd/parameters/section_reader.h"
 
 #include <algorithm>
@@ -18,7 +19,10 @@ namespace nsfd
    *
    * half of it dissipated after the peak, in a tail without end. With a
    * viscosity eta the intensity follows eta db/dt = min(0, w - b C d^2), solved
-   * exactly over a step for the opening at its end.
+   * exactly over a step for the opening at its end. With a healing time tau it
+   * grows again where the face is pressed, db/dt = min(1, p/p_h)/tau: the
+   * driving force is -w there, and the surface energy that is set free is
+   * dissipated.
    */
   class Rcc final : public CohesiveLaw
   {
@@ -41,6 +45,7 @@ namespace nsfd
       viscosity_ = reader.number("damage viscosity", "0",
                                  units::damage_viscosity, Range::non_negative(),
                                  "Of the intensity, J s/m^2; 0: none");
+      healing_ = laws::read_healing(reader);
     }
 
     bool extrinsic() const override { return false; }
@@ -92,12 +97,25 @@ namespace nsfd
       return std::clamp(elastic_limit_ / std::sqrt(b), d_m, d);
     }
 
+    bool heals() const override { return healing_.time > 0.; }
+
+    double healed_opening(const double d_m, const double pressure,
+                          const double time) const override
+    {
+      if (!heals() || d_m <= elastic_limit_)
+        return d_m;
+      const double b = intensity(d_m) + healing_.rate(pressure) * time;
+      return b >= 1. ? elastic_limit_
+                     : std::min(d_m, elastic_limit_ / std::sqrt(b));
+    }
+
     /** Just after the peak. */
     double steepest_softening() const override { return 3. * stiffness_; }
 
   private:
     double stiffness_, adhesion_energy_, stiffness_ratio_, elastic_limit_;
     double viscosity_;
+    laws::Healing healing_;
 
     /** The authors' own beta, min(1, w / (C d^2)). */
     double intensity(const double d) const
@@ -111,10 +129,13 @@ namespace nsfd
 
   NSFD_REGISTER(CohesiveLawRegistry, Rcc, "rcc",
                 "Intrinsic adhesion of Raous, Cangemi and Cocu, endless tail; "
-                "from stiffness and adhesion energy, viscous by choice",
+                "from stiffness and adhesion energy; by choice viscous, and "
+                "healing under pressure",
                 "stiffness = 2e12; adhesion energy = 8 J/m^2",
                 "stiffness = 2e12; adhesion energy = 8 J/m^2; "
                 "tangential stiffness = 5e12",
                 "stiffness = 2e12; adhesion energy = 8 J/m^2; "
-                "damage viscosity = 0.01");
+                "damage viscosity = 0.01",
+                "stiffness = 2e12; adhesion energy = 8 J/m^2; "
+                "healing time = 1 ms; healing pressure = 1 MPa");
 } // namespace nsfd

@@ -102,6 +102,8 @@ namespace nsfd
       return "has two damage scalars";
     if (law.rate_dependent())
       return "has a damage that takes time";
+    if (law.heals())
+      return "heals";
     if (std::isinf(law.steepest_softening()) &&
         law.final_opening() > law.peak_opening() * (1. + 1e-12))
       return "has a traction that jumps while it softens";

@@ -87,6 +87,45 @@ namespace nsfd
           {{{0, 1}}, {{0, 2}}, {{1, 2}}}};
       return k < dim ? std::array<unsigned int, 2>{{k, k}} : shear[k - dim];
     }
+
+    /** Hooke's matrix for sqrt(2) e_ab off the diagonal, so that sigma : e is
+        a product. */
+    template <int dim>
+    Block hooke_matrix(const LinearElasticity<dim> &law)
+    {
+      constexpr unsigned int n = dim * (dim + 1) / 2;
+      Block C(n, n);
+      for (unsigned int k = 0; k < n; ++k)
+        for (unsigned int l = 0; l < n; ++l) {
+          if (law.is_isotropic()) {
+            C(k, l) = (k == l ? 2. * law.mu : 0.) +
+                      (k < dim && l < dim ? law.lambda : 0.);
+            continue;
+          }
+          const auto [a, b] = pair_of<dim>(k);
+          const auto [c, d] = pair_of<dim>(l);
+          C(k, l) = (k < dim ? 1. : std::sqrt(2.)) *
+                    (l < dim ? 1. : std::sqrt(2.)) * law.modulus(a, b, c, d);
+        }
+      return C;
+    }
+
+    /** At least the largest eigenvalue of that matrix; isotropic: it. */
+    template <int dim>
+    double largest_modulus(const LinearElasticity<dim> &law)
+    {
+      if (law.is_isotropic())
+        return std::max(2. * law.mu, dim * law.lambda + 2. * law.mu);
+      const Block C = hooke_matrix(law);
+      double largest = 0.;
+      for (unsigned int k = 0; k < C.rows; ++k) {
+        double sum = 0.;
+        for (unsigned int l = 0; l < C.cols; ++l)
+          sum += std::abs(C(k, l));
+        largest = std::max(largest, sum);
+      }
+      return largest;
+    }
   } // namespace
 
   /** Of L^T (V/m) B B^T L, C = L L^T: strains instead of displacements. */
@@ -94,13 +133,10 @@ namespace nsfd
   double highest_frequency(const BodyShape<dim> &shape)
   {
     constexpr unsigned int n = dim * (dim + 1) / 2;
-    const double lambda = shape.elasticity[0].lambda,
-                 mu = shape.elasticity[0].mu;
-    // in sqrt(2) e_ab off the diagonal, so that sigma : e is a product
-    Block C(n, n), S(n, n);
+    const Block C = hooke_matrix(shape.elasticity[0]);
+    Block S(n, n);
     for (unsigned int k = 0; k < n; ++k)
       for (unsigned int l = 0; l < n; ++l) {
-        C(k, l) = (k == l ? 2. * mu : 0.) + (k < dim && l < dim ? lambda : 0.);
         const auto [a, b] = pair_of<dim>(k);
         const auto [c, d] = pair_of<dim>(l);
         const double scale =
@@ -130,10 +166,8 @@ namespace nsfd
     for (unsigned int i = 0; i <= dim; ++i)
       gram += dealii::symmetrize(
           dealii::outer_product(shape.gradients[i], shape.gradients[i]));
-    const double lambda = shape.elasticity[0].lambda,
-                 mu = shape.elasticity[0].mu;
     return std::sqrt(dealii::eigenvalues(gram)[0] *
-                     std::max(2. * mu, dim * lambda + 2. * mu) * shape.volume /
+                     largest_modulus(shape.elasticity[0]) * shape.volume /
                      lumped_mass(shape, 0));
   }
 
@@ -168,7 +202,8 @@ namespace nsfd
                   return bounds[a] > bounds[b];
                 });
       double highest = 0.;
-      std::set<std::vector<double>> known; // congruent cells: gradients, moduli
+      // congruent cells: gradients, moduli, axes of the crystal
+      std::set<std::vector<double>> known;
       for (const unsigned int b : order) {
         if (bounds[b] <= highest)
           break;
@@ -176,6 +211,8 @@ namespace nsfd
         std::vector<double> key = {shape->elasticity[0].lambda,
                                    shape->elasticity[0].mu,
                                    shape->moduli[0].density};
+        key.insert(key.end(), shape->moduli[0].orientation.begin(),
+                   shape->moduli[0].orientation.end());
         for (unsigned int i = 0; i <= dim; ++i)
           for (unsigned int d = 0; d < dim; ++d)
             key.push_back(shape->gradients[i][d]);

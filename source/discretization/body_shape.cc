@@ -162,8 +162,7 @@ namespace nsfd
                    std::none_of(input.materials.begin(), input.materials.end(),
                                 [](const MaterialInput &material) {
                                   return material.rigid ||
-                                         material.transverse ||
-                                         material.graded ||
+                                         material.varies_in_cells() ||
                                          material.is_viscous();
                                 }))
   {

@@ -65,8 +65,15 @@ namespace nsfd
     using GradedRange = std::array<LocalModuli, 2>;
 
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    constexpr GradedRange no_range = {
-        {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}}};
+    constexpr GradedRange no_range = {{{infinity, infinity, infinity, {}},
+                                       {-infinity, -infinity, -infinity, {}}}};
+
+    bool has_orientation(const LocalModuli &local)
+    {
+      return std::all_of(
+          local.orientation.begin(), local.orientation.end(),
+          [](const double angle) { return std::isfinite(angle); });
+    }
 
     /** The constants of a cell are used; false if they cannot be. */
     bool take(const MaterialInput &material, const LocalModuli &local,
@@ -81,34 +88,32 @@ namespace nsfd
         range[1].*member = std::max(range[1].*member, value);
         possible = possible && finite;
       }
-      return possible && local.density > 0. &&
-             (material.rigid || material.transverse || local.young > 0.) &&
+      return possible && has_orientation(local) && local.density > 0. &&
+             (material.rigid || !material.is_isotropic() || local.young > 0.) &&
              local.poisson > -1. && local.poisson < 0.5;
     }
 
     /** What stands in for constants that end the run. */
-    constexpr LocalModuli harmless = {1., 0., 1.};
+    constexpr LocalModuli harmless = {1., 0., 1., {}};
 
     /** One entry if they are the same at all places. */
     template <int dim>
     std::vector<LocalModuli>
     moduli_of_cell(const MaterialInput &material,
                    const std::vector<Point<dim>> &places,
-                   const Point<dim> &origin, GradedRange &range)
+                   const Point<dim> &origin, const unsigned int id,
+                   GradedRange &range, bool &is_oriented)
     {
       std::vector<LocalModuli> moduli;
       for (const auto &place : places) {
         const LocalModuli local =
-            local_moduli<dim>(material, origin + Tensor<1, dim>(place));
+            local_moduli<dim>(material, origin + Tensor<1, dim>(place), id);
+        is_oriented = is_oriented && has_orientation(local);
         moduli.push_back(take(material, local, range) ? local : harmless);
       }
       const LocalModuli &first = moduli.front();
       if (std::all_of(moduli.begin(), moduli.end(),
-                      [&](const LocalModuli &local) {
-                        return local.young == first.young &&
-                               local.poisson == first.poisson &&
-                               local.density == first.density;
-                      }))
+                      [&](const LocalModuli &local) { return local == first; }))
         moduli.resize(1);
       return moduli;
     }
@@ -117,9 +122,12 @@ namespace nsfd
     std::vector<double> as_numbers(const std::vector<LocalModuli> &moduli)
     {
       std::vector<double> numbers;
-      for (const LocalModuli &local : moduli)
+      for (const LocalModuli &local : moduli) {
         numbers.insert(numbers.end(),
                        {local.young, local.poisson, local.density});
+        numbers.insert(numbers.end(), local.orientation.begin(),
+                       local.orientation.end());
+      }
       return numbers;
     }
 
@@ -167,8 +175,8 @@ namespace nsfd
     for (unsigned int m = 0; m < input.materials.size(); ++m) {
       const MaterialInput &material = input.materials[m];
       constants.push_back(
-          {{material.young, material.poisson, material.density}});
-      if (material.graded)
+          {material.varies() ? LocalModuli() : local_moduli(material)});
+      if (material.varies())
         graded.emplace(m, no_range);
     }
     first_node.push_back(0);
@@ -192,16 +200,23 @@ namespace nsfd
       cell_id.push_back(cell->id().template to_binary<dim>());
     };
     // of cells without blocks all of a material are of one class
-    std::vector<int> class_of_material(input.materials.size(), -1);
+    std::map<std::pair<unsigned int, unsigned int>, unsigned int> class_of_kind;
     for (const auto &cell : cells) {
       const unsigned int material = materials[cell->active_cell_index()];
       auto &own_corners = corners.emplace_back();
       own_corners.reserve(cell->n_vertices());
       for (const unsigned int v : cell->vertex_indices())
         own_corners.push_back(cell->vertex(v));
-      if (builder.has_no_blocks() && class_of_material[material] >= 0) {
-        add(cell, unsigned(class_of_material[material]));
-        continue;
+      const bool varies = input.materials[material].varies();
+      // of one material, and of one grain if there are some
+      const std::pair<unsigned int, unsigned int> kind = {
+          material, varies ? cell->material_id() : 0};
+      if (builder.has_no_blocks()) {
+        const auto found = class_of_kind.find(kind);
+        if (found != class_of_kind.end()) {
+          add(cell, found->second);
+          continue;
+        }
       }
       const RoundedCorners<dim> rounded(own_corners);
       const unsigned int divided = divided_faces(cell),
@@ -211,13 +226,17 @@ namespace nsfd
                             : Form({{divided, absorbs}}, rounded.key);
       std::vector<double> local; // empty where the material is not graded
       std::vector<LocalModuli> moduli;
-      if (input.materials[material].graded) {
+      if (varies) {
+        bool is_oriented = true;
         auto &of_form = places[form];
         if (of_form.empty())
           of_form = builder.moduli_places(cell->reference_cell(),
                                           rounded.relative, divided);
         moduli = moduli_of_cell<dim>(input.materials[material], of_form,
-                                     own_corners[0], graded[material]);
+                                     own_corners[0], cell->material_id(),
+                                     graded[material], is_oriented);
+        if (!is_oriented)
+          without_orientation.emplace(material, cell->material_id());
         local = as_numbers(moduli);
       }
       const auto [entry, is_new] = class_by_key.emplace(
@@ -230,7 +249,7 @@ namespace nsfd
                       shapes.emplace_back(), bodies.classes.emplace_back());
         builder.add_absorbing(absorbs, shapes[k], bodies.classes[k]);
       }
-      class_of_material[material] = int(k);
+      class_of_kind.emplace(kind, k);
       add(cell, k);
     }
     spare_shapes_.resize(shapes.size());

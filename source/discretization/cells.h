@@ -44,9 +44,11 @@ namespace nsfd
     std::vector<std::array<unsigned int, 4>> cell_id; ///< CellId::to_binary(),
                                                       ///< alike on all ranks
 
-    /// of every graded material, the smallest and the largest constants on
+    /// of every material that varies, the smallest and the largest constants on
     /// this rank; -infinity: one is not a number somewhere
     std::map<unsigned int, std::array<LocalModuli, 2>> graded;
+    /// by material, the id of the first cell here that has no Euler angles
+    std::map<unsigned int, unsigned int> without_orientation;
 
     ShapeOfBody<dim> shape(const std::size_t body) const
     {

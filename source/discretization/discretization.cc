@@ -3,6 +3,7 @@
 #include "cells.h"
 #include "face_points.h"
 #include "loads.h"
+#include "materials/anisotropy.h"
 #include "materials/elasticity.h"
 
 #include "materials/cauchy_stress.h"
@@ -74,6 +75,36 @@ namespace nsfd
           what));
     }
 
+    /** Collective. @throws std::runtime_error on all ranks. */
+    void check_orientation(const MaterialInput &material, const unsigned int m,
+                           const std::map<unsigned int, unsigned int> &without,
+                           const Communicator &communicator)
+    {
+      if (!material.anisotropic)
+        return;
+      constexpr double none = std::numeric_limits<double>::infinity();
+      const auto found = without.find(m);
+      const double id = communicator.min(
+          found == without.end() ? none : double(found->second));
+      if (id == none)
+        return;
+      const OrientationInput &orientation = material.anisotropic->orientation;
+      const unsigned int grain = grain_number(orientation, unsigned(id));
+      if (orientation.kind == OrientationInput::Kind::table)
+        throw std::runtime_error(fmt::format(
+            "Material: {}/orientation file: grain {} has cells but no line in "
+            "`{}`, which has {} grains; add one, or give the grain a block of "
+            "its own",
+            material.name, grain, orientation.source,
+            orientation.of_grain.size()));
+      throw std::runtime_error(fmt::format(
+          "Material: {}/{} is not a number in cells of grain {}", material.name,
+          orientation.kind == OrientationInput::Kind::cell_data
+              ? fmt::format("orientation data = {}", orientation.source)
+              : "Euler angles",
+          grain));
+    }
+
     template <int dim>
     void check_graded(const SceneInput &input, const Cells<dim> &cells,
                       const Communicator &communicator)
@@ -82,9 +113,12 @@ namespace nsfd
           {0., std::numeric_limits<double>::infinity()}};
       for (const auto &[m, range] : cells.graded) {
         const MaterialInput &material = input.materials[m];
+        check_orientation(material, m, cells.without_orientation, communicator);
+        if (!material.graded)
+          continue;
         check_range(material, "density", material.graded->density,
                     range[0].density, range[1].density, positive, communicator);
-        if (material.rigid || material.transverse)
+        if (material.rigid || !material.is_isotropic())
           continue;
         check_range(material, "Young modulus", material.graded->young,
                     range[0].young, range[1].young, positive, communicator);
@@ -131,6 +165,18 @@ namespace nsfd
       all.densest = communicator.max(all.densest);
     }
 
+    /** Of a body that varies within; only its formulas depend on the place. */
+    template <int dim>
+    LocalModuli moduli_at(const BodyShape<dim> &shape,
+                          const MaterialInput &material, const Point<dim> &x)
+    {
+      LocalModuli local = local_moduli<dim>(material, x, 0);
+      if (material.anisotropic &&
+          !material.anisotropic->orientation.depends_on_place())
+        local.orientation = shape.moduli[0].orientation;
+      return local;
+    }
+
     /** Rigid ones, and graded ones of no cell, have none. */
     template <int dim>
     std::vector<MaterialExtremes>
@@ -140,10 +186,10 @@ namespace nsfd
       std::vector<MaterialExtremes> result(input.materials.size());
       for (unsigned int m = 0; m < result.size(); ++m) {
         const MaterialInput &material = input.materials[m];
-        if (!material.rigid && !material.graded)
+        if (!material.rigid && !material.varies())
           result[m] =
               LinearElasticity<dim>(material, input.plane_stress).extremes();
-        if (material.rigid || !material.graded)
+        if (material.rigid || !material.varies())
           continue;
         for (std::size_t k = 0; k < cells.shapes.size(); ++k)
           if (cells.bodies.classes[k].material == m)
@@ -235,16 +281,15 @@ namespace nsfd
       return {};
     if (material.kind == MaterialKind::finite_strain)
       return cauchy_stress<dim>(material, input_->plane_stress, gradient);
-    const auto &of_cell = cells_->class_shape(body).elasticity;
-    auto stress =
-        of_cell.size() == 1
-            ? of_cell[0].stress(gradient)
-            : LinearElasticity<dim>(
-                  material,
-                  local_moduli<dim>(material,
-                                    a_little_inside(x, cells_->centre(body))),
-                  input_->plane_stress)
-                  .stress(gradient);
+    const auto &shape = cells_->class_shape(body);
+    auto stress = shape.elasticity.size() == 1
+                      ? shape.elasticity[0].stress(gradient)
+                      : LinearElasticity<dim>(
+                            material,
+                            moduli_at(shape, material,
+                                      a_little_inside(x, cells_->centre(body))),
+                            input_->plane_stress)
+                            .stress(gradient);
     if (material.initial_stress.is_given()) {
       const auto initial = InitialStress<dim>::at(material, x);
       for (unsigned int k = 0; k < stress.size(); ++k)

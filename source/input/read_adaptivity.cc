@@ -22,11 +22,13 @@ namespace nsfd
              "triangles are bisected, tetrahedra are not yet",
              "remove the section Adaptivity, or take hexes");
       for (const MaterialInput &material : scene.materials)
-        refuse(material.rigid || material.graded || material.is_viscous(),
+        refuse(material.rigid || material.graded || material.is_viscous() ||
+                   !material.is_isotropic(),
                fmt::format("cells of material `{}` are not bisected yet: it is "
-                           "rigid, graded or viscous",
+                           "rigid, anisotropic, graded or viscous",
                            material.name),
-               "make it elastic and uniform, or remove the section Adaptivity");
+               "make it linear elastic and uniform, take quads or hexes, or "
+               "remove the section Adaptivity");
       for (const InterfaceInput &block : scene.interfaces) {
         refuse((block.law && !block.law->extrinsic()) ||
                    block.law_name == "elastic",

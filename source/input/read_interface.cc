@@ -181,6 +181,29 @@ namespace nsfd
                         units::none, {0., 1., false, true}, threshold_text);
     }
 
+    /** Where a law that heals is not known. */
+    void check_healing(SectionReader &reader, const InterfaceInput &input,
+                       const SceneInput &scene)
+    {
+      if (!input.law || !input.law->heals())
+        return;
+      if (scene.large_motion)
+        reader.error("healing time",
+                     "faces heal in small motions alone: in large ones those "
+                     "that are pressed are not those that parted",
+                     "remove it, or write motion = small");
+      else if (scene.has_history())
+        reader.error("healing time",
+                     fmt::format("faces do not heal yet in scenes with {}",
+                                 history_dependent_model(scene)),
+                     "remove it");
+      if (input.sliding.lifts())
+        reader.error("healing time",
+                     "faces with dilatancy or wear do not heal: pressed, they "
+                     "may be open",
+                     "remove one of them");
+    }
+
     InterfaceInput read_interface(SectionReader &reader,
                                   const SceneInput &scene)
     {
@@ -229,6 +252,7 @@ namespace nsfd
         read_cohesive_block(reader, input);
       read_contact(reader, input);
       check_lift(reader, input);
+      check_healing(reader, input, scene);
       read_damage_start(reader, input);
       input.intact = read_intact_faces(reader, input, scene);
       read_crack_pressure(reader, input);

@@ -1,5 +1,6 @@
 #include "read_sections.h"
 
+#include "mesh/named_mesh.h"
 #include "nsfd/materials/material_model.h"
 
 #include <fmt/format.h>
@@ -32,9 +33,19 @@ namespace nsfd
       return std::string("initial stress ") + stress_components[k];
     }
 
+    GrainTable grains_of(const SceneInput &scene)
+    {
+      if (scene.mesh.named)
+        return grain_table(*scene.mesh.named);
+      GrainTable table; // the bodies, from 1
+      for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+        table.numbers.push_back(b + 1);
+      return table;
+    }
+
     /** False if it is none: what the other entries mean is unknown. */
     bool read_model(SectionReader &reader, const SceneInput &scene,
-                    MaterialInput &material)
+                    const GrainTable &grains, MaterialInput &material)
     {
       const std::vector<std::string> names = material_model_names();
       const unsigned int n_before = reader.errors().n_errors();
@@ -50,9 +61,10 @@ namespace nsfd
       material.model = model;
       material.kind = model->kind();
       material.rigid = material.kind == MaterialKind::rigid;
-      model->read(reader,
-                  {scene.dimension, scene.plane_stress, scene.large_motion},
-                  material);
+      model->read(
+          reader,
+          {scene.dimension, scene.plane_stress, scene.large_motion, &grains},
+          material);
       return true;
     }
 
@@ -159,13 +171,14 @@ namespace nsfd
                       SceneInput &scene)
   {
     const auto blocks = file.open_blocks("Material");
+    const GrainTable grains = grains_of(scene);
     for (ParameterSection *block : blocks) {
       SectionReader reader(*block, errors);
       MaterialInput material;
       material.name = block->block_name();
       material.where = read_where(reader, "all", WhereUse::cells, scene,
                                   "all, a group or an expression of x, y, z");
-      if (read_model(reader, scene, material))
+      if (read_model(reader, scene, grains, material))
         read_fields(reader, scene, material);
       scene.materials.push_back(material);
     }

@@ -1,3 +1,5 @@
+#include "mesh/named_mesh.h"
+#include "mesh/nearest_grains.h"
 #include "nsfd/mesh/mesh_type.h"
 #include "read_sections.h"
 
@@ -122,6 +124,24 @@ namespace nsfd
       return is_wanted;
     }
 
+    /** Of a mesh that is made without them. */
+    void read_grains(SectionReader &reader, MeshInput &mesh)
+    {
+      const std::string name = "grains",
+                        text = "number of grains, each of the cells next to a "
+                               "random place; none without it";
+      if (!reader.optional(name, text))
+        return;
+      constexpr unsigned int most_grains = 10000;
+      const unsigned int n_before = reader.errors().n_errors();
+      mesh.grains = reader.integer(name, "", 1, most_grains, text);
+      if (!mesh.named || reader.errors().n_errors() > n_before)
+        return;
+      NamedMesh with_grains = *mesh.named;
+      add_grains(with_grains, mesh.grains, mesh.seed);
+      mesh.named = std::make_shared<NamedMesh>(std::move(with_grains));
+    }
+
     MeshInput read_one_mesh(SectionReader &reader, const unsigned int dimension,
                             const bool is_body)
     {
@@ -139,7 +159,9 @@ namespace nsfd
           "share of the shortest edge by which interior vertices move");
       mesh.seed = reader.integer("seed", "1", 0,
                                  std::numeric_limits<unsigned int>::max(),
-                                 "of the distortion");
+                                 "of grains and distortion");
+      if (!is_body && mesh.type != "voronoi" && mesh.type != "bodies")
+        read_grains(reader, mesh);
       return mesh;
     }
   } // namespace

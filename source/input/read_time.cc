@@ -27,6 +27,12 @@ namespace nsfd
                                    "of `{}` has a damage viscosity",
                                    interface.name),
                        "remove its damage viscosity");
+        if (interface.law && interface.law->heals())
+          reader.error("start",
+                       fmt::format("an equilibrium has no time in which the "
+                                   "law of `{}` could heal",
+                                   interface.name),
+                       "remove its healing time, or start as given");
         refuse_lift(interface);
       }
       for (const ObstacleInput &obstacle : scene.obstacles)

@@ -281,10 +281,12 @@ namespace nsfd
     const std::vector<std::string> groups = group_names(scene);
     const bool is_group = is_among(groups, value);
     const bool is_grains =
-        scene.mesh.type == "voronoi" && value == "between grains";
+        (scene.mesh.type == "voronoi" || scene.mesh.grains > 0) &&
+        value == "between grains";
 
     if (is_body || is_group ||
-        (is_number(value) && has_numbered_groups(scene))) {
+        (is_number(value) &&
+         (has_numbered_groups(scene) || scene.mesh.grains > 0))) {
       where.kind = Where::Kind::group;
       where.name = value;
       if (is_group)

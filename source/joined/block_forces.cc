@@ -135,11 +135,13 @@ namespace nsfd
                    const JoinedMesh<dim> &mesh, FrontViscosity front,
                    const GhostCells *ghosts, const GhostCells *divided)
   {
-    if (discretization.input().large_motion)
-      return std::make_unique<FiniteForces<dim>>(
+    const SceneInput &input = discretization.input();
+    std::unique_ptr<CellForces<dim>> forces;
+    if (input.iterates())
+      forces = std::make_unique<FiniteForces<dim>>(
           discretization, mesh, std::move(front), ghosts, divided);
-    auto forces =
-        elastic_forces(discretization, mesh, std::move(front), ghosts);
+    else
+      forces = elastic_forces(discretization, mesh, std::move(front), ghosts);
     if (discretization.input().has_viscous_bodies())
       forces->set_viscous(
           std::make_unique<ViscousForces<dim>>(discretization, mesh));

@@ -57,10 +57,10 @@ namespace nsfd
   };
 
   /**
-   * If all materials are isotropic and not graded, constant strain on
-   * simplices of degree 1 and sum factorisation on quads and hexes; the blocks
-   * of the bodies else: on all ranks alike. @p ghosts of the cells, if there
-   * may be some, and @p divided as in FiniteForces.
+   * If no material varies in its cells, constant strain on simplices of degree
+   * 1, and if all are isotropic, too, sum factorisation on quads and hexes; the
+   * blocks of the bodies else: on all ranks alike. @p ghosts of the cells, if
+   * there may be some, and @p divided as in FiniteForces.
    */
   template <int dim>
   std::unique_ptr<CellForces<dim>>

@@ -18,7 +18,7 @@ namespace nsfd
     for (const MaterialInput &m : input.materials)
       materials_.push_back(m.kind == MaterialKind::history_dependent
                                ? m.model->template history_dependent<dim>(
-                                     m, true, input.plane_stress)
+                                     m, input.large_motion, input.plane_stress)
                                : nullptr);
     std::size_t n = 0;
     for (std::size_t cell = 0; any() && cell + 1 < first_.size(); ++cell) {

@@ -12,8 +12,15 @@ namespace nsfd
 {
   namespace
   {
-    template <int dim>
-    constexpr unsigned int per_cell = dim *dim + 3;
+    /// numbers of Hooke's law: lambda and mu, or the upper half of its matrix
+    template <int dim, bool isotropic>
+    constexpr unsigned int n_moduli = isotropic
+                                          ? 2
+                                          : (dim *(dim + 1) / 2) *
+                                                (dim * (dim + 1) / 2 + 1) / 2;
+
+    template <int dim, bool isotropic>
+    constexpr unsigned int per_cell = dim *dim + 1 + n_moduli<dim, isotropic>;
 
     /** Index of sigma_ab among the components that are kept. */
     constexpr unsigned int component(const unsigned int dim,
@@ -27,10 +34,10 @@ namespace nsfd
       return reinterpret_cast<const Vector8u *>(values)[k];
     }
 
-    /** Of one block: stresses from the displacements of its corners. */
+    /** Of one block: gradients from the displacements of its corners. */
     template <int dim>
-    NSFD_INLINE void strain_block(const double *cells, const unsigned int *of,
-                                  const double *q, Vector8 *stresses)
+    NSFD_INLINE void gradient_block(const double *cells, const unsigned int *of,
+                                    const double *q, Vector8 (*H)[dim])
     {
       Vector8 u[dim + 1][dim];
       for (unsigned int i = 0; i <= dim; ++i) {
@@ -41,13 +48,19 @@ namespace nsfd
           u[i][c] = Vector8{at[0][c], at[1][c], at[2][c], at[3][c],
                             at[4][c], at[5][c], at[6][c], at[7][c]};
       }
-      Vector8 H[dim][dim];
       for (unsigned int c = 0; c < dim; ++c)
         for (unsigned int d = 0; d < dim; ++d) {
           H[c][d] = (u[1][c] - u[0][c]) * row(cells, d);
           for (unsigned int i = 2; i <= dim; ++i)
             H[c][d] += (u[i][c] - u[0][c]) * row(cells, (i - 1) * dim + d);
         }
+    }
+
+    /** Stresses by lambda and mu. */
+    template <int dim>
+    NSFD_INLINE void isotropic_block(const double *cells,
+                                     const Vector8 (*H)[dim], Vector8 *stresses)
+    {
       const Vector8 lambda = row(cells, dim * dim + 1),
                     mu = row(cells, dim * dim + 2);
       Vector8 trace = H[0][0];
@@ -59,6 +72,28 @@ namespace nsfd
           sigma = mu * (H[a][b] + H[b][a]);
           if (a == b)
             sigma += lambda * trace;
+        }
+    }
+
+    /** Stresses by Hooke's matrix. */
+    template <int dim>
+    NSFD_INLINE void matrix_block(const double *cells, const Vector8 (*H)[dim],
+                                  Vector8 *stresses)
+    {
+      constexpr unsigned int n = dim * (dim + 1) / 2;
+      Vector8 strain[n]; // shear twice, as it stands twice in C : eps
+      for (unsigned int a = 0; a < dim; ++a)
+        for (unsigned int b = a; b < dim; ++b)
+          strain[component(dim, a, b)] = a == b ? H[a][a] : H[a][b] + H[b][a];
+      unsigned int k = dim * dim + 1;
+      for (unsigned int s = 0; s < n; ++s)
+        stresses[s] = Vector8{};
+      for (unsigned int s = 0; s < n; ++s)
+        for (unsigned int t = s; t < n; ++t) {
+          const Vector8 C = row(cells, k++);
+          stresses[s] += C * strain[t];
+          if (t != s)
+            stresses[t] += C * strain[s];
         }
     }
 
@@ -108,7 +143,7 @@ namespace nsfd
       }
     }
 
-    template <int dim>
+    template <int dim, bool isotropic>
     NSFD_INLINE void set_all(const std::size_t n_cells, const double *cells,
                              const unsigned int *of, const double *q,
                              double *stresses, double *peaks, double *f,
@@ -118,7 +153,7 @@ namespace nsfd
                              n_stresses = dim * (dim + 1) / 2;
       for (std::size_t first = 0; first < n_cells; first += lanes) {
         const std::size_t block = first / lanes;
-        const double *mine = cells + block * per_cell<dim> * lanes;
+        const double *mine = cells + block * per_cell<dim, isotropic> * lanes;
         const unsigned int *corners = of + first * n_corners;
         unsigned int last[n_corners * lanes];
         const auto count =
@@ -128,15 +163,25 @@ namespace nsfd
             last[k] = corners[k < n_corners * count ? k : k % n_corners];
           corners = last;
         }
-        Vector8 sigma[n_stresses], F[n_corners][dim];
-        strain_block<dim>(mine, corners, q, sigma);
+        Vector8 H[dim][dim], sigma[n_stresses], F[n_corners][dim];
+        gradient_block<dim>(mine, corners, q, H);
+        if constexpr (isotropic)
+          isotropic_block<dim>(mine, H, sigma);
+        else
+          matrix_block<dim>(mine, H, sigma);
         for (unsigned int s = 0; s < n_stresses; ++s)
           reinterpret_cast<Vector8u *>(stresses)[block * n_stresses + s] =
               sigma[s];
         peaks[block] = peak_of_block<dim>(sigma);
         if (front) {
           Vector8 now;
-          dilatation_block<dim>(mine, sigma, now);
+          if constexpr (isotropic)
+            dilatation_block<dim>(mine, sigma, now);
+          else {
+            now = H[0][0];
+            for (unsigned int a = 1; a < dim; ++a)
+              now += H[a][a];
+          }
           const Vector8 volume = row(mine, dim * dim);
           Vector8 tension;
           front->update_block(first, count, now, volume);
@@ -158,7 +203,7 @@ namespace nsfd
                    const unsigned int *of, const double *q, double *stresses,
                    double *peaks, double *f, FrontViscosity *front)
     {
-      set_all<2>(n, cells, of, q, stresses, peaks, f, front);
+      set_all<2, true>(n, cells, of, q, stresses, peaks, f, front);
     }
 
     NSFD_CLONES
@@ -166,7 +211,55 @@ namespace nsfd
                    const unsigned int *of, const double *q, double *stresses,
                    double *peaks, double *f, FrontViscosity *front)
     {
-      set_all<3>(n, cells, of, q, stresses, peaks, f, front);
+      set_all<3, true>(n, cells, of, q, stresses, peaks, f, front);
+    }
+
+    NSFD_CLONES
+    void set_crystals_plane(const std::size_t n, const double *cells,
+                            const unsigned int *of, const double *q,
+                            double *stresses, double *peaks, double *f,
+                            FrontViscosity *front)
+    {
+      set_all<2, false>(n, cells, of, q, stresses, peaks, f, front);
+    }
+
+    NSFD_CLONES
+    void set_crystals_space(const std::size_t n, const double *cells,
+                            const unsigned int *of, const double *q,
+                            double *stresses, double *peaks, double *f,
+                            FrontViscosity *front)
+    {
+      set_all<3, false>(n, cells, of, q, stresses, peaks, f, front);
+    }
+
+    /** Numbers of a cell in cells_. */
+    template <int dim>
+    constexpr std::size_t numbers_of_cell(const bool isotropic)
+    {
+      return isotropic ? per_cell<dim, true> : per_cell<dim, false>;
+    }
+
+    /** Those of Hooke's law, each @p lanes behind the last one. */
+    template <int dim>
+    void store_moduli(const LinearElasticity<dim> &law, const bool isotropic,
+                      double *to)
+    {
+      if (isotropic) {
+        to[0] = law.lambda;
+        to[lanes] = law.mu;
+        return;
+      }
+      for (unsigned int a = 0; a < dim; ++a)
+        for (unsigned int b = a; b < dim; ++b)
+          for (unsigned int c = 0; c < dim; ++c)
+            for (unsigned int d = c; d < dim; ++d) {
+              const unsigned int s = component(dim, a, b),
+                                 t = component(dim, c, d),
+                                 n = dim * (dim + 1) / 2;
+              if (s <= t) // s rows of n, n - 1, ... entries before
+                to[(s * n - s * (s + 1) / 2 + t) * lanes] =
+                    law.modulus(a, b, c, d);
+            }
     }
   } // namespace
 
@@ -180,8 +273,7 @@ namespace nsfd
       const MaterialInput &material =
           discretization.input().materials[body.material];
       if (!cells.shapes[k].reference.is_simplex() ||
-          cells.shapes[k].n_nodes != dim + 1 || material.transverse ||
-          material.graded)
+          cells.shapes[k].n_nodes != dim + 1 || material.varies_in_cells())
         return false;
     }
     return true;
@@ -194,23 +286,28 @@ namespace nsfd
         n_cells_(discretization.bodies().size())
   {
     const Cells<dim> &cells = discretization.cells();
-    const std::size_t n_blocks = (n_cells_ + lanes - 1) / lanes;
-    cells_.assign(n_blocks * per_cell<dim> * lanes, 0.);
+    const auto &materials = discretization.input().materials;
+    isotropic_ = std::all_of(
+        materials.begin(), materials.end(),
+        [](const MaterialInput &material) { return material.is_isotropic(); });
+    const std::size_t n_blocks = (n_cells_ + lanes - 1) / lanes,
+                      n_numbers = numbers_of_cell<dim>(isotropic_);
+    cells_.assign(n_blocks * n_numbers * lanes, 0.);
     stresses_.assign(n_blocks * n_stresses * lanes, 0.);
     peaks_.assign(n_blocks, 0.);
     for (std::size_t b = 0; b < n_cells_; ++b) {
       const auto of_body = cells.shape(b);
       const BodyShape<dim> &shape = *of_body;
       double *mine =
-          cells_.data() + (b / lanes) * per_cell<dim> * lanes + b % lanes;
+          cells_.data() + (b / lanes) * n_numbers * lanes + b % lanes;
       for (unsigned int i = 1; i <= dim; ++i)
         for (unsigned int d = 0; d < dim; ++d)
           mine[((i - 1) * dim + d) * lanes] = shape.gradients[i][d];
       mine[dim * dim * lanes] = shape.volume;
       if (shape.elasticity.empty())
         continue; // rigid: no stress
-      mine[(dim * dim + 1) * lanes] = shape.elasticity[0].lambda;
-      mine[(dim * dim + 2) * lanes] = shape.elasticity[0].mu;
+      store_moduli(shape.elasticity[0], isotropic_,
+                   mine + (dim * dim + 1) * lanes);
     }
   }
 
@@ -218,7 +315,9 @@ namespace nsfd
   void ConstantStrainForces<dim>::set_forces(CornerGroups<dim> &groups)
   {
     std::fill(groups.force.begin(), groups.force.end(), 0.);
-    (dim == 2 ? set_plane : set_space)(
+    (dim == 2     ? isotropic_ ? set_plane : set_crystals_plane
+     : isotropic_ ? set_space
+                  : set_crystals_space)(
         n_cells_, cells_.data(), groups.of_corners().data(),
         groups.displacement.data(), stresses_.data(), peaks_.data(),
         groups.force.data(), this->front_.acts() ? &this->front_ : nullptr);
@@ -233,7 +332,8 @@ namespace nsfd
     const std::size_t cell = corner / (dim + 1), block = cell / lanes,
                       lane = cell % lanes;
     const auto i = unsigned(corner % (dim + 1));
-    const double *mine = cells_.data() + block * per_cell<dim> * lanes + lane;
+    const double *mine =
+        cells_.data() + block * numbers_of_cell<dim>(isotropic_) * lanes + lane;
     const double *elastic =
         stresses_.data() + block * n_stresses * lanes + lane;
     const double tension =

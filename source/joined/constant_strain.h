@@ -4,7 +4,8 @@
 
 namespace nsfd
 {
-  /** Isotropic simplices of degree 1, `lanes` of them at a time. */
+  /** Simplices of degree 1, of one Hooke's law each, `lanes` of them at a
+      time. */
   template <int dim>
   class ConstantStrainForces final : public CellForces<dim>
   {
@@ -29,8 +30,9 @@ namespace nsfd
     static constexpr unsigned int n_stresses = dim * (dim + 1) / 2;
 
     std::size_t n_cells_;
+    bool isotropic_ = true; ///< all materials are
     /// by block of lanes: gradients of the shape functions 1 to dim, volume,
-    /// lambda and mu
+    /// lambda and mu, or the upper half of Hooke's matrix
     std::vector<double> cells_;
     /// by block: sigma_xx, yy(, zz), xy(, xz, yz), Pa
     std::vector<double> stresses_;

@@ -41,6 +41,8 @@ namespace nsfd
         (!problem.viscosity.empty() && problem.viscosity[i] > 0.))
       return false;
     beta = present_beta;
+    if (interaction.law && interaction.law->heals() && beta < 1.)
+      return false;
     one_sided = problem.compression_stiffness[i] == 0.;
     broken = kind == PointKind::free;
     if (broken) {

@@ -11,6 +11,15 @@ namespace nsfd::finite
   template <int dim>
   using Matrix = std::array<double, dim * dim>;
 
+  template <int dim>
+  Matrix<dim> unit()
+  {
+    Matrix<dim> F{};
+    for (unsigned int c = 0; c < dim; ++c)
+      F[c * dim + c] = 1.;
+    return F;
+  }
+
   /** F S. */
   template <int dim>
   Matrix<dim> first_piola(const Matrix<dim> &F, const Voigt<dim> &S)

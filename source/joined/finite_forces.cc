@@ -1,5 +1,6 @@
 #include "finite_forces.h"
 #include "finite_algebra.h"
+#include "small_strain.h"
 
 #include "discretization/cells.h"
 #include "discretization/point_places.h"
@@ -18,6 +19,13 @@ namespace nsfd
     /// stresses at a face are at most this times those at the points of the
     /// cell quadrature, of cells whose strain is not constant
     constexpr double beyond_quadrature = 3.;
+
+    template <int dim>
+    bool is_rigid(const Discretization<dim> &discretization,
+                  const std::size_t cell)
+    {
+      return discretization.cells().body_class(cell).undeformed;
+    }
   } // namespace
 
   template <int dim>
@@ -29,6 +37,7 @@ namespace nsfd
       : CellForces<dim>(std::move(front)), discretization_(discretization),
         mesh_(mesh), ghosts_(ghosts), divided_(divided),
         differ_(discretization.cells().differ()),
+        small_(!discretization.input().large_motion),
         sides_(discretization.points().n_points),
         displacement_(mesh.n_corners() * dim), forces_(mesh.n_corners() * dim),
         stored_(discretization.bodies().size()),
@@ -51,8 +60,9 @@ namespace nsfd
           cells.shape(differ_ ? k : cells.bodies.classes[k].bodies[0]);
       const BodyShape<dim> &shape = *of_body;
       here.n_nodes = shape.n_nodes;
-      const bool constant =
-          shape.reference.is_simplex() && shape.n_nodes == dim + 1;
+      const bool constant = shape.reference.is_simplex() &&
+                            shape.n_nodes == dim + 1 &&
+                            shape.elasticity.size() <= 1;
       for (unsigned int q = 0; q < (constant ? 1 : shape.JxW.size()); ++q) {
         here.JxW.push_back(constant ? shape.volume : shape.JxW[q]);
         for (unsigned int i = 0; i < shape.n_nodes; ++i)
@@ -151,6 +161,45 @@ namespace nsfd
     return {volume, now};
   }
 
+  /** The same of small strain, of any material; deformation() is 1 + H. */
+  template <int dim>
+  std::array<double, 2>
+  FiniteForces<dim>::set_small_cell(const std::size_t cell, double *f)
+  {
+    const Tables &here = tables(cell);
+    const unsigned int n = here.n_nodes, n_q = unsigned(here.JxW.size());
+    const std::size_t n_cells = stored_.size();
+    double volume = 0., now = 0.;
+    if (!taken_.empty())
+      taken_[cell] = taken_[n_cells + cell] = 0.;
+    for (unsigned int q = 0; q < n_q; ++q) {
+      const double *g = &here.gradients[std::size_t(q) * n * dim],
+                   JxW = here.JxW[q];
+      Matrix H = deformation(cell, g);
+      double trace = 0.;
+      for (unsigned int c = 0; c < dim; ++c)
+        trace += H[c * dim + c] -= 1.;
+      SmallStrain<dim> at;
+      if (!set_small_strain(discretization_, histories_, cell, q, here.n_same,
+                            H, at)) {
+        inverted_ = int(cell);
+        break;
+      }
+      volume += JxW;
+      now += JxW * (1. + trace);
+      stored_[cell] += JxW * at.energy;
+      taken_[cell] += JxW * at.plastic;
+      taken_[n_cells + cell] += JxW * at.viscous;
+      peaks_[cell] = std::max(peaks_[cell], finite::square<dim>(at.sigma));
+      for (unsigned int i = 0; i < n; ++i) {
+        const auto of_node = finite::multiply<dim>(at.sigma, g + i * dim);
+        for (unsigned int c = 0; c < dim; ++c)
+          f[i * dim + c] -= JxW * of_node[c];
+      }
+    }
+    return {volume, now};
+  }
+
   template <int dim>
   void FiniteForces<dim>::set_cell(const std::size_t cell)
   {
@@ -160,9 +209,10 @@ namespace nsfd
     double *f = &forces_[first];
     std::fill_n(f, n * dim, 0.);
     stored_[cell] = peaks_[cell] = 0.;
-    if (is_rigid(cell))
+    if (is_rigid(discretization_, cell))
       return;
-    const auto [volume, now] = histories_.any() && histories_.of(cell)
+    const auto [volume, now] = small_ ? set_small_cell(cell, f)
+                               : histories_.any() && histories_.of(cell)
                                    ? set_flowing_cell(cell, f)
                                    : set_elastic_cell(cell, f);
     if (divided_)
@@ -175,7 +225,8 @@ namespace nsfd
     std::fill_n(more, n * dim, 0.);
     for (unsigned int q = 0; q < n_q && tension != 0.; ++q) {
       const double *g = &here.gradients[std::size_t(q) * n * dim];
-      const Matrix C = finite::cofactors<dim>(deformation(cell, g));
+      const Matrix C = finite::cofactors<dim>(small_ ? finite::unit<dim>()
+                                                     : deformation(cell, g));
       for (unsigned int i = 0; i < n; ++i) {
         const auto of_node = finite::multiply<dim>(C, g + i * dim);
         for (unsigned int c = 0; c < dim; ++c)
@@ -255,9 +306,15 @@ namespace nsfd
   auto FiniteForces<dim>::stress_at(const std::size_t cell,
                                     const unsigned int slot) const -> Matrix
   {
-    if (is_rigid(cell))
+    if (is_rigid(discretization_, cell))
       return {};
-    const Matrix F = deformation(cell, at_slot(cell, slot));
+    Matrix F = deformation(cell, at_slot(cell, slot));
+    if (small_) {
+      for (unsigned int c = 0; c < dim; ++c)
+        F[c * dim + c] -= 1.;
+      return small_stress_beside(discretization_, histories_, cell,
+                                 tables(cell).slot_points[slot], slot, F);
+    }
     if (histories_.any() && histories_.of(cell))
       return flowing_stress(cell, tables(cell).slot_points[slot], F);
     Voigt<dim> S;
@@ -271,6 +328,10 @@ namespace nsfd
   auto FiniteForces<dim>::frame(const std::size_t point) const -> Matrix
   {
     const double *rest = discretization_.points().axes(point);
+    Matrix axes;
+    std::copy_n(rest, dim * dim, axes.begin());
+    if (small_)
+      return axes;
     Matrix F{};
     for (const auto &[cell, slot] : sides_[point])
       if (cell >= 0) {
@@ -280,8 +341,6 @@ namespace nsfd
           F[k] += of_side[k] / 2.;
       }
     // two sides that have turned far from each other have no mean normal
-    Matrix axes;
-    std::copy_n(rest, dim * dim, axes.begin());
     if (!(jacobian<dim>(F.data()) > 0.))
       return axes;
     const auto put = [&](const unsigned int row, std::array<double, dim> x) {
@@ -380,9 +439,10 @@ namespace nsfd
         at_rest.back() = norm(tangent);
     }
     double most = 1.;
-    for (std::size_t cell = 0; cell < stored_.size(); ++cell) {
+    for (std::size_t cell = 0; !small_ && cell < stored_.size(); ++cell) {
       const Tables &here = tables(cell);
-      if (is_rigid(cell) || (divided_ && divided_->is_ghost(cell)))
+      if (is_rigid(discretization_, cell) ||
+          (divided_ && divided_->is_ghost(cell)))
         continue;
       if (histories_.any() && histories_.of(cell)) {
         most = std::max(most, flowing_stiffening(cell));

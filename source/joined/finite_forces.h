@@ -24,6 +24,9 @@ namespace nsfd
    *   U = sum_q JxW_q W(C), C = (theta/J)^(2/dim) F^T F,
    *   theta = sum_q JxW_q J_q / sum_q JxW_q
    *
+   * In small motions, of scenes with such materials, F is 1 and strains are
+   * linear: small_strain.h. Their cells are fully integrated.
+   *
    * Where every rank has all cells each computes its own, and gets those of the
    * others from their ranks.
    */
@@ -91,10 +94,6 @@ namespace nsfd
     {
       return tables_[differ_ ? cell : discretization_.bodies().class_of[cell]];
     }
-    bool is_rigid(const std::size_t cell) const
-    {
-      return discretization_.cells().body_class(cell).undeformed;
-    }
     const Hyperelastic<dim> &material(std::size_t cell) const;
     Matrix deformation(std::size_t cell, const double *gradients) const;
     const double *at_slot(std::size_t cell, unsigned int slot) const;
@@ -105,6 +104,7 @@ namespace nsfd
     void set_cell(std::size_t cell);
     std::array<double, 2> set_elastic_cell(std::size_t cell, double *f);
     std::array<double, 2> set_flowing_cell(std::size_t cell, double *f);
+    std::array<double, 2> set_small_cell(std::size_t cell, double *f);
     void share_cells();
 
     const Discretization<dim> &discretization_;
@@ -112,6 +112,7 @@ namespace nsfd
     const GhostCells *const ghosts_;  ///< null: there are none
     const GhostCells *const divided_; ///< null: cells are not
     const bool differ_;
+    const bool small_; ///< motions: nothing turns
     std::vector<Tables> tables_;
     std::vector<std::unique_ptr<const Hyperelastic<dim>>> materials_;
     /// of a point, both sides: cell and slot

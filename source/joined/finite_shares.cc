@@ -54,7 +54,8 @@ namespace nsfd
             histories_.unpack(cell, values);
           if (is_inverted)
             inverted_ = std::max(inverted_, int(cell));
-          else if (front.acts() && !is_rigid(cell))
+          else if (front.acts() &&
+                   !discretization_.cells().body_class(cell).undeformed)
             front.update(cell, volumes_[cell][1] / volumes_[cell][0] - 1.,
                          volumes_[cell][0]);
         });

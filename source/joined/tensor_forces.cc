@@ -87,8 +87,8 @@ namespace nsfd
       const BodyClass &body = cells.bodies.classes[k];
       const MaterialInput &material =
           discretization.input().materials[body.material];
-      if (!cells.shapes[k].reference.is_hyper_cube() || material.transverse ||
-          material.graded)
+      if (!cells.shapes[k].reference.is_hyper_cube() ||
+          !material.is_isotropic() || material.graded)
         return false;
     }
     const unsigned int degree = discretization.input().discretization.degree;

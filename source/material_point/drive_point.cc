@@ -1,6 +1,7 @@
 #include "drive_point.h"
 
 #include "cohesive_laws/friction_weight.h"
+#include "nonsmooth/healing.h"
 #include "nonsmooth/point_law.h"
 #include "nsfd/scene/time_input.h"
 
@@ -45,6 +46,7 @@ namespace nsfd
 
       void start(const PathPoint &point)
       {
+        time_ = point.at.time;
         row_.path = point.path;
         row_.contact = point.at.reaction;
       }
@@ -109,12 +111,17 @@ namespace nsfd
             U[1] != 0. ? sign(U[1]) * solution.frozen.threshold : friction;
         account(energies, arrived);
         change_kind(energies, solution.damages);
+        if (law_.heals())
+          heal(energies, at.reaction, at.time - time_);
+        time_ = at.time;
       }
 
     private:
       OneStepProblem<2> problem_;
       const CohesiveLaw &law_;
       CurveRow row_;
+      double time_ = 0.;
+      double origin_ = 0.; ///< slip at which healed bonds do not pull
 
       Vector increment_to(const PathPoint &next) const
       {
@@ -131,7 +138,7 @@ namespace nsfd
       /** Of a point that has moved to a mark. */
       Secant secant_at(const PathMark &mark) const
       {
-        const double jump[] = {mark.opening, mark.slip};
+        const double jump[] = {mark.opening, mark.slip - origin_};
         OneStepProblem<2> open = problem_;
         if (open.kind[0] == PointKind::rigid)
           open.kind[0] = PointKind::cohesive;
@@ -142,7 +149,7 @@ namespace nsfd
 
       void prepare(const Vector &U, const double reaction)
       {
-        problem_.jump_old = {row_.opening, row_.slip};
+        problem_.jump_old = {row_.opening, row_.slip - origin_};
         problem_.jump_free = problem_.jump_old;
         problem_.contact[0] = reaction > 0.;
         problem_.target[0] = U[0];
@@ -186,6 +193,23 @@ namespace nsfd
         row_.damage += energies.damage;
         row_.friction_work += row_.friction * U[1];
         row_.work += row_.normal() * U[0] + row_.tangential() * U[1];
+      }
+
+      void heal(const PointEnergies<2> &energies, const double pressure,
+                const double time)
+      {
+        const double jump[] = {row_.opening, row_.slip - origin_};
+        const Healing healing =
+            healing_of<2>(problem_, 0, energies.beta, energies.history.opening,
+                          jump, pressure, time);
+        if (!healing.heals)
+          return;
+        problem_.kind[0] = PointKind::cohesive;
+        problem_.opening_max[0] = healing.opening_max;
+        origin_ = row_.slip - healing.slip_share * jump[1];
+        row_.beta = healing.beta;
+        row_.stored -= healing.dissipated;
+        row_.damage += healing.dissipated;
       }
 
       void change_kind(const PointEnergies<2> &energies, const bool damages)

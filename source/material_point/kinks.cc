@@ -36,7 +36,7 @@ namespace nsfd
       };
       return {mean(a.path, b.path),
               {mean(a.at.opening, b.at.opening), mean(a.at.slip, b.at.slip),
-               mean(a.at.reaction, b.at.reaction)}};
+               mean(a.at.reaction, b.at.reaction), mean(a.at.time, b.at.time)}};
     }
 
     /**

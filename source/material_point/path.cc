@@ -14,7 +14,7 @@ namespace nsfd
     /** A diagonal of the plane of opening and slip. */
     PathMark both(const double size)
     {
-      return {size * half_diagonal, size * half_diagonal, 0.};
+      return {size * half_diagonal, size * half_diagonal, 0., 0.};
     }
   } // namespace
 
@@ -110,7 +110,8 @@ namespace nsfd
         points.push_back({first + (i - 1) + x,
                           {a.opening + x * (b.opening - a.opening),
                            a.slip + x * (b.slip - a.slip),
-                           a.reaction + x * (b.reaction - a.reaction)}});
+                           a.reaction + x * (b.reaction - a.reaction),
+                           a.time + x * (b.time - a.time)}});
       }
       points.push_back({first + i, b});
     }

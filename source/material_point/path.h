@@ -9,6 +9,7 @@ namespace nsfd
   struct PathMark {
     double opening = 0., slip = 0.; ///< u_N, u_T in m
     double reaction = 0.;           ///< prescribed contact traction in Pa
+    double time = 0.;               ///< s, of what heals
   };
 
   /** A mark, or a place between two of them. */

@@ -28,7 +28,7 @@ namespace nsfd
     /** What one opening, slip and reaction of a path are worth. */
     PathMark unit_of(const CohesiveLaw &law, const double reaction)
     {
-      return {opening_scale(law), slip_scale(law), reaction};
+      return {opening_scale(law), slip_scale(law), reaction, 0.};
     }
 
     // ------------------------------------------------------------- named paths
@@ -44,7 +44,7 @@ namespace nsfd
       else if (reader.optional("reaction", text))
         reaction = reader.number("reaction", "", units::pressure,
                                  Range::positive(), text);
-      reader.refuse({"opening", "slip"},
+      reader.refuse({"opening", "slip", "time"},
                     fmt::format("the path `{}` has its own; write type = "
                                 "points for a list",
                                 path.name));
@@ -76,26 +76,34 @@ namespace nsfd
           "reaction", units::pressure, positive,
           "contact traction at the marks, Pa; where it is 0 nothing presses");
 
+      const std::vector<double> time = reader.number_list(
+          "time", units::time, positive,
+          "at the marks, s, in which what is pressed heals; default 0");
+
       const std::size_t n =
-          std::max({opening.size(), slip.size(), reaction.size()});
+          std::max({opening.size(), slip.size(), reaction.size(), time.size()});
       if (n < 2)
         reader.error("type", "a path of points needs two marks or more",
                      "write for example: set opening = 0, 1 um, 0, 3 um");
       for (const auto &[name, list] :
            {std::make_pair("opening", &opening), std::make_pair("slip", &slip),
-            std::make_pair("reaction", &reaction)})
+            std::make_pair("reaction", &reaction),
+            std::make_pair("time", &time)})
         if (list->size() > 1 && list->size() != n)
           reader.error(
               name,
               fmt::format("`{}` has {} values, but the path has {} marks", name,
                           list->size(), n),
               "give every list as many values, or a single one");
+      if (!std::is_sorted(time.begin(), time.end()))
+        reader.error("time", "the times at the marks go back",
+                     "write each as late as the one before or later");
       if (reader.errors().has_errors())
         return {};
       Marks marks;
       for (std::size_t i = 0; i < n; ++i)
-        marks.push_back(
-            {value_at(opening, i), value_at(slip, i), value_at(reaction, i)});
+        marks.push_back({value_at(opening, i), value_at(slip, i),
+                         value_at(reaction, i), value_at(time, i)});
       return marks;
     }
 
@@ -119,6 +127,7 @@ namespace nsfd
       return name == "opening"    ? &mark.opening
              : name == "slip"     ? &mark.slip
              : name == "reaction" ? &mark.reaction
+             : name == "time"     ? &mark.time
                                   : nullptr;
     }
 
@@ -132,7 +141,8 @@ namespace nsfd
       for (const std::string &name : header)
         if (component(probe, name) == nullptr)
           throw std::runtime_error(fmt::format(
-              "line 1: `{}` is not one of opening, slip, reaction", name));
+              "line 1: `{}` is not one of opening, slip, reaction, time",
+              name));
       Marks marks;
       for (unsigned int number = 2; std::getline(stream, line); ++number) {
         if (collapse_blanks(line).empty())
@@ -159,11 +169,12 @@ namespace nsfd
 
     Marks read_file(SectionReader &reader)
     {
-      reader.refuse({"opening", "slip", "reaction"}, "they are in the file");
+      reader.refuse({"opening", "slip", "reaction", "time"},
+                    "they are in the file");
       const std::string path = reader.file(
           "file",
-          "CSV with the columns opening, slip, reaction (any of them), a mark "
-          "per row; relative to the folder of the parameter file",
+          "CSV with the columns opening, slip, reaction, time (any of them), a "
+          "mark per row; relative to the folder of the parameter file",
           "path.csv");
       if (path.empty())
         return {};
@@ -201,8 +212,9 @@ namespace nsfd
         const double t = double(i) / n;
         points.push_back({t,
                           {opening(0., 0., 0., t), slip(0., 0., 0., t),
-                           reaction(0., 0., 0., t)}});
+                           reaction(0., 0., 0., t), 0.}});
       }
+      reader.refuse({"time"}, "formulas are of t from 0 to 1");
       if (points[0].at.opening != 0. || points[0].at.slip != 0.)
         points.insert(points.begin(), PathPoint());
       return points;

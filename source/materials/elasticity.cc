@@ -1,5 +1,7 @@
 #include "elasticity.h"
 
+#include "anisotropy.h"
+
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
@@ -9,20 +11,36 @@ namespace nsfd
 {
   template <int dim>
   LocalModuli local_moduli(const MaterialInput &material,
-                           const dealii::Point<dim> &x)
+                           const dealii::Point<dim> &x, const unsigned int id)
   {
+    LocalModuli local;
+    if (material.anisotropic) {
+      std::array<double, 3> place{};
+      for (unsigned int d = 0; d < dim; ++d)
+        place[d] = x[d];
+      local.orientation =
+          orientation_at(material.anisotropic->orientation, place, id);
+      local.density =
+          material.graded ? material.graded->density.at(x) : material.density;
+      return local;
+    }
     if (!material.graded)
       return {material.young, material.poisson, material.density};
     const GradedInput &graded = *material.graded;
     return {graded.young.at(x), graded.poisson.at(x), graded.density.at(x)};
   }
 
+  LocalModuli local_moduli(const MaterialInput &material)
+  {
+    return material.anisotropic ? local_moduli(material, dealii::Point<3>(), 0)
+                                : LocalModuli{material.young, material.poisson,
+                                              material.density};
+  }
+
   template <int dim>
   LinearElasticity<dim>::LinearElasticity(const MaterialInput &material,
                                           const bool plane_stress)
-      : LinearElasticity(material,
-                         {material.young, material.poisson, material.density},
-                         plane_stress)
+      : LinearElasticity(material, local_moduli(material), plane_stress)
   {
   }
 
@@ -34,6 +52,8 @@ namespace nsfd
   {
     if (material.transverse)
       set_transverse(material);
+    else if (material.anisotropic)
+      set_matrix(*material.anisotropic, local.orientation);
     else
       set_isotropic(local.young, local.poisson);
   }
@@ -91,7 +111,7 @@ namespace nsfd
           {std::sqrt(mu / density_), std::sqrt((lambda + 2. * mu) / density_)}};
       return;
     }
-    has_axis_ = true;
+    symmetry_ = Symmetry::axial;
     for (unsigned int c = 0; c < dim; ++c)
       axis_[c] = input.axis[c];
     lambda = lambda_zz_ = C_23;
@@ -106,6 +126,41 @@ namespace nsfd
     }
     set_speeds_about_axis();
   }
+
+  namespace
+  {
+    /**
+     * The smallest and the largest of the @p roots, ascending pairs, of an
+     * angle between 0 and @p range: by a scan and golden sections.
+     */
+    template <typename Roots>
+    std::array<double, 2> extremes_of(const double range, const Roots &roots)
+    {
+      constexpr unsigned int n = 180;
+      const double spacing = range / n;
+      // the largest value of sign * root k
+      const auto extreme = [&](const unsigned int k, const double sign) {
+        const auto value = [&](const double phi) {
+          return sign * roots(phi)[k];
+        };
+        double best = 0.;
+        for (unsigned int i = 1; i <= n; ++i)
+          if (value(i * spacing) > value(best))
+            best = i * spacing;
+        const double section = (std::sqrt(5.) - 1.) / 2.;
+        double low = best - spacing, high = best + spacing;
+        for (unsigned int i = 0; i < 60; ++i) {
+          const double width = section * (high - low);
+          if (value(high - width) > value(low + width))
+            high = low + width;
+          else
+            low = high - width;
+        }
+        return sign * std::max(value(best), value((low + high) / 2.));
+      };
+      return {{extreme(0, -1.), extreme(1, 1.)}};
+    }
+  } // namespace
 
   /**
    * Waves that run at the angle phi to the axis: in the plane of both their
@@ -125,31 +180,80 @@ namespace nsfd
       const double mean = (a + b) / 2., radius = std::hypot((a - b) / 2., d);
       return std::array<double, 2>{{mean - radius, mean + radius}};
     };
-    constexpr unsigned int n = 180;
-    const double pi = std::acos(-1.), spacing = pi / 2. / n;
-    // the largest value of sign * root k
-    const auto extreme = [&](const unsigned int k, const double sign) {
-      const auto value = [&](const double phi) { return sign * roots(phi)[k]; };
-      double best = 0.;
-      for (unsigned int i = 1; i <= n; ++i)
-        if (value(i * spacing) > value(best))
-          best = i * spacing;
-      const double section = (std::sqrt(5.) - 1.) / 2.;
-      double low = best - spacing, high = best + spacing;
-      for (unsigned int i = 0; i < 60; ++i) {
-        const double width = section * (high - low);
-        if (value(high - width) > value(low + width))
-          high = low + width;
-        else
-          low = high - width;
-      }
-      return sign * std::max(value(best), value((low + high) / 2.));
-    };
-    double slowest = extreme(0, -1.);
+    const double pi = std::acos(-1.);
+    auto [slowest, fastest] = extremes_of(pi / 2., roots);
     if (dim == 3)
       slowest = std::min({slowest, mu, shear});
-    speeds_ = {
-        {std::sqrt(slowest / density_), std::sqrt(extreme(1, 1.) / density_)}};
+    speeds_ = {{std::sqrt(slowest / density_), std::sqrt(fastest / density_)}};
+  }
+
+  template <int dim>
+  void
+  LinearElasticity<dim>::set_matrix(const AnisotropicInput &input,
+                                    const std::array<double, 3> &orientation)
+  {
+    symmetry_ = Symmetry::none;
+    HookeMatrix C = turned(input.stiffness, orientation);
+    auto matrix = std::make_shared<Matrix>();
+    if (plane_stress_)
+      for (const unsigned int k : {2u, 4u, 5u}) { // one strain after the other
+        const HookeMatrix before = C;
+        for (unsigned int i = 0; i < 6; ++i)
+          for (unsigned int j = 0; j < 6; ++j)
+            C[i][j] -= before[i][k] * before[k][j] / before[k][k];
+      }
+    constexpr unsigned int from[] = {0, 1, 3};
+    for (unsigned int i = 0; i < n_strains; ++i) {
+      for (unsigned int j = 0; j < n_strains; ++j)
+        matrix->C[i][j] = dim == 2 ? C[from[i % 3]][from[j % 3]] : C[i][j];
+      matrix->across[i] = dim == 2 && !plane_stress_ ? C[2][from[i % 3]] : 0.;
+    }
+    double normal = 0., all = 0.; // C_aabb and C_abab
+    for (unsigned int a = 0; a < dim; ++a)
+      for (unsigned int b = 0; b < dim; ++b) {
+        normal += matrix->C[a][b];
+        all += matrix->C[place(a, b)][place(a, b)];
+      }
+    mu = (dim * all - normal) / (dim * (dim - 1) * (dim + 2));
+    lambda = (normal - 2. * dim * mu) / (dim * dim);
+    lambda_zz_ = lambda;
+    matrix_ = matrix;
+    stiffest_ = {input.stiffest_young, input.stiffest_poisson};
+    softest_ = {input.softest_young, input.softest_poisson};
+    if (dim == 3)
+      speeds_ = {{std::sqrt(input.slowest / density_),
+                  std::sqrt(input.fastest / density_)}};
+    else
+      set_speeds_in_plane();
+  }
+
+  /** As set_speeds_about_axis(), over half a turn. */
+  template <int dim>
+  void LinearElasticity<dim>::set_speeds_in_plane()
+  {
+    const auto roots = [this](const double phi) {
+      dealii::Tensor<1, dim> direction;
+      direction[0] = std::cos(phi);
+      direction[1] = std::sin(phi);
+      const double a = matrix_coupling(0, 0, direction, direction),
+                   b = matrix_coupling(1, 1, direction, direction),
+                   d = matrix_coupling(0, 1, direction, direction);
+      const double mean = (a + b) / 2., radius = std::hypot((a - b) / 2., d);
+      return std::array<double, 2>{{mean - radius, mean + radius}};
+    };
+    const auto [slowest, fastest] = extremes_of(std::acos(-1.), roots);
+    speeds_ = {{std::sqrt(slowest / density_), std::sqrt(fastest / density_)}};
+  }
+
+  template <int dim>
+  double LinearElasticity<dim>::modulus(const unsigned int a,
+                                        const unsigned int b,
+                                        const unsigned int c,
+                                        const unsigned int d) const
+  {
+    dealii::Tensor<1, dim> g, h;
+    g[b] = h[d] = 1.;
+    return coupling(a, c, g, h);
   }
 
   template <int dim>
@@ -157,6 +261,18 @@ namespace nsfd
   LinearElasticity<dim>::stress(const double *gradient) const
   {
     std::array<double, 6> sigma{};
+    if (symmetry_ == Symmetry::none) {
+      for (unsigned int a = 0; a < dim; ++a)
+        for (unsigned int b = 0; b < dim; ++b) {
+          const double strain = gradient[a * dim + b];
+          for (unsigned int i = 0; i < n_strains; ++i)
+            sigma[i < dim ? i : i + 3 - dim] +=
+                matrix_->C[i][place(a, b)] * strain;
+          if (dim == 2)
+            sigma[2] += matrix_->across[place(a, b)] * strain;
+        }
+      return sigma;
+    }
     double trace = 0.;
     for (unsigned int c = 0; c < dim; ++c)
       trace += gradient[c * dim + c];
@@ -169,7 +285,7 @@ namespace nsfd
       sigma[4] = mu * (gradient[2] + gradient[2 * dim]);
       sigma[5] = mu * (gradient[dim + 2] + gradient[2 * dim + 1]);
     }
-    if (!has_axis_)
+    if (symmetry_ == Symmetry::isotropic)
       return sigma;
     std::array<double, dim> across{}; // e a
     double along = 0.;
@@ -211,9 +327,9 @@ namespace nsfd
   }
 
   template LocalModuli local_moduli<2>(const MaterialInput &,
-                                       const dealii::Point<2> &);
+                                       const dealii::Point<2> &, unsigned int);
   template LocalModuli local_moduli<3>(const MaterialInput &,
-                                       const dealii::Point<3> &);
+                                       const dealii::Point<3> &, unsigned int);
   template class LinearElasticity<2>;
   template class LinearElasticity<3>;
 } // namespace nsfd

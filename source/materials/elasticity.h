@@ -5,24 +5,34 @@
 #include <deal.II/base/point.h>
 
 #include <array>
+#include <memory>
 
 namespace nsfd
 {
+  struct AnisotropicInput;
   struct MaterialInput;
 
-  /** What a material that may be graded is at one place. */
+  /** What a material that may vary is at one place. */
   struct LocalModuli {
     double young = 0., poisson = 0., density = 0.;
+    std::array<double, 3> orientation{}; ///< EulerAngles of an anisotropic one
+
+    bool operator==(const LocalModuli &other) const
+    {
+      return young == other.young && poisson == other.poisson &&
+             density == other.density && orientation == other.orientation;
+    }
   };
 
-  /** At the place @p x; the constants of a material that is the same all over.
-   */
+  /** At the place @p x, in a cell of this id (see GrainTable). */
   template <int dim>
   LocalModuli local_moduli(const MaterialInput &material,
-                           const dealii::Point<dim> &x);
+                           const dealii::Point<dim> &x, unsigned int id);
+  /** All over, of a material that does not vary. */
+  LocalModuli local_moduli(const MaterialInput &material);
 
   /**
-   * Linear elasticity: plane strain or stress, or in space. Isotropic, or
+   * Linear elasticity: plane strain or stress, or in space. Isotropic; or
    * transversely isotropic about an axis a of length 1,
    *
    *     sigma = lambda tr(e) 1 + 2 mu e + alpha (a.ea 1 + tr(e) aa)
@@ -31,7 +41,9 @@ namespace nsfd
    * (Spencer, Deformations of fibre-reinforced materials, 1972), mu the shear
    * modulus across the axis and mu + delta along it. In plane problems these
    * are the components in the plane; an axis normal to it leaves an isotropic
-   * plane.
+   * plane. Or of any symmetry, by Hooke's matrix: in plane strain its part of
+   * the plane, in plane stress what is left of it where the stresses zz, xz, yz
+   * are zero; lambda and mu are then the means over all directions (Voigt).
    */
   template <int dim>
   class LinearElasticity
@@ -53,8 +65,15 @@ namespace nsfd
     {
       const double value = lambda * g[c] * h[d] + mu * g[d] * h[c] +
                            (c == d ? mu * (g * h) : 0.);
-      return has_axis_ ? value + axis_coupling(c, d, g, h) : value;
+      return symmetry_ == Symmetry::isotropic ? value
+             : symmetry_ == Symmetry::axial ? value + axis_coupling(c, d, g, h)
+                                            : matrix_coupling(c, d, g, h);
     }
+
+    /** C_abcd; lambda and mu say it all where it is isotropic. */
+    double modulus(unsigned int a, unsigned int b, unsigned int c,
+                   unsigned int d) const;
+    bool is_isotropic() const { return symmetry_ == Symmetry::isotropic; }
 
     /** xx, yy, zz, xy, xz, yz from a gradient [component][direction]. */
     std::array<double, 6> stress(const double *gradient) const;
@@ -71,6 +90,9 @@ namespace nsfd
     void set_isotropic(double young, double poisson);
     void set_transverse(const MaterialInput &material);
     void set_speeds_about_axis();
+    void set_matrix(const AnisotropicInput &input,
+                    const std::array<double, 3> &orientation);
+    void set_speeds_in_plane();
 
     template <typename Vector>
     double axis_coupling(const unsigned int c, const unsigned int d,
@@ -83,10 +105,41 @@ namespace nsfd
              beta_ * aa * ag * ah;
     }
 
-    bool plane_stress_ = false, has_axis_ = false;
+    /** Rows of Hooke's matrix: xx, yy(, zz), xy(, xz, yz). */
+    static constexpr unsigned int place(const unsigned int a,
+                                        const unsigned int b)
+    {
+      return a == b ? a : dim == 2 ? 2u : a + b + 2u;
+    }
+
+    template <typename Vector>
+    double matrix_coupling(const unsigned int c, const unsigned int d,
+                           const Vector &g, const Vector &h) const
+    {
+      double sum = 0.;
+      for (unsigned int k = 0; k < dim; ++k) {
+        const auto &row = matrix_->C[place(c, k)];
+        double of_row = 0.;
+        for (unsigned int l = 0; l < dim; ++l)
+          of_row += row[place(d, l)] * h[l];
+        sum += g[k] * of_row;
+      }
+      return sum;
+    }
+
+    enum class Symmetry { isotropic, axial, none };
+    static constexpr unsigned int n_strains = dim * (dim + 1) / 2;
+    struct Matrix {
+      std::array<std::array<double, n_strains>, n_strains> C;
+      std::array<double, n_strains> across; ///< of sigma_zz in plane strain
+    };
+
+    bool plane_stress_ = false;
+    Symmetry symmetry_ = Symmetry::isotropic;
     double lambda_zz_ = 0.; ///< of sigma_zz in plane strain
     double alpha_ = 0., delta_ = 0., beta_ = 0.;
     dealii::Tensor<1, dim> axis_;
+    std::shared_ptr<const Matrix> matrix_; ///< of Symmetry::none
     double density_ = 0.;
     std::array<double, 2> speeds_{}; ///< slowest, fastest
     MaterialExtremes::Moduli stiffest_, softest_;

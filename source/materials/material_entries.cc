@@ -167,6 +167,34 @@ namespace nsfd::materials
 
   void refuse_axis(SectionReader &reader)
   {
+    refuse_transverse(reader);
+    refuse_cubic(reader);
+    refuse_orthotropic(reader);
+    refuse_orientation(reader);
+  }
+
+  void refuse_cubic(SectionReader &reader)
+  {
+    reader.refuse({"C11", "C12", "C44", "shear modulus"},
+                  "it needs model = cubic");
+  }
+
+  void refuse_orthotropic(SectionReader &reader)
+  {
+    reader.refuse(
+        {"E1", "E2", "E3", "nu12", "nu13", "nu23", "G12", "G13", "G23"},
+        "it needs model = orthotropic");
+  }
+
+  void refuse_orientation(SectionReader &reader)
+  {
+    reader.refuse({"orientation", "Euler angles", "axis 1", "axis 2",
+                   "orientation seed", "orientation file", "orientation data"},
+                  "it needs model = cubic or orthotropic");
+  }
+
+  void refuse_transverse(SectionReader &reader)
+  {
     reader.refuse({"axis", "axial Young modulus", "transverse Young modulus",
                    "axial Poisson ratio", "transverse Poisson ratio",
                    "axial shear modulus"},

@@ -127,6 +127,9 @@ namespace nsfd
       using namespace materials;
       demand_small_motion(reader, setting, material);
       material.transverse = read_transverse(reader, setting);
+      refuse_cubic(reader);
+      refuse_orthotropic(reader);
+      refuse_orientation(reader);
       refuse_isotropic(reader, "the material is transversely isotropic and "
                                "has an axial and a transverse one");
       read_density(reader, why_uniform(setting), material);

@@ -64,7 +64,7 @@ namespace nsfd
   void serialize(Archive &archive, NamedMesh &mesh, unsigned int)
   {
     archive &mesh.dimension &mesh.coordinates &mesh.cells &mesh.faces &mesh
-        .groups &mesh.sets &mesh.notes;
+        .groups &mesh.sets &mesh.element_data &mesh.notes;
   }
 
   template <typename Archive>

@@ -184,6 +184,29 @@ namespace nsfd
       std::size_t n_higher_order_ = 0, n_left_out_ = 0;
     };
 
+    /** $ElementData of three components, by its name. */
+    void collect_data(NamedMesh &mesh)
+    {
+      std::vector<int> views;
+      gmsh::view::getTags(views);
+      for (const int view : views) {
+        std::string kind, name;
+        std::vector<std::size_t> tags;
+        std::vector<std::vector<double>> data;
+        double time = 0.;
+        int n_components = 0;
+        gmsh::view::getModelData(view, 0, kind, tags, data, time, n_components);
+        gmsh::option::getString(
+            fmt::format("View[{}].Name", gmsh::view::getIndex(view)), name);
+        if (kind != "ElementData" || n_components != 3)
+          continue;
+        auto &values = mesh.element_data[name];
+        for (std::size_t k = 0; k < tags.size(); ++k)
+          if (data[k].size() >= 3)
+            values[tags[k]] = {data[k][0], data[k][1], data[k][2]};
+      }
+    }
+
     void set_options(const GmshRequest &request)
     {
       using gmsh::option::setNumber;
@@ -298,6 +321,8 @@ namespace nsfd
           (!request.is_geometry || make_cells(session, request, problems)))
         mesh =
             Collector(request.dimension, request.is_geometry).collect(problems);
+      if (!request.is_geometry)
+        collect_data(mesh);
     });
     if (!done && problems.empty())
       problems.push_back(complaint("the file cannot be used", session));

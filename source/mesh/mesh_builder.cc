@@ -5,6 +5,7 @@
 
 #include "body_table.h"
 #include "named_mesh.h"
+#include "nearest_grains.h"
 #include "spread_simplices.h"
 
 #include <deal.II/base/mpi.h>
@@ -46,6 +47,8 @@ namespace nsfd
                                        input.type, type->dimension(), dim));
       else
         mesh = type->build<dim>(input, refinements, problems);
+      if (problems.empty() && input.grains > 0 && !input.named)
+        add_grains(mesh, input.grains, input.seed);
       if (problems.empty() && input.distortion > 0.)
         distort(mesh, input.distortion, input.seed);
       // a mesh of one shape without simplices has been split, or need not be
@@ -175,7 +178,8 @@ namespace nsfd
     // the cells of a mesh that will change are those of level 0
     const bool by_p4est =
         (mesh_input.type == "rectangle" || mesh_input.type == "brick") &&
-        mesh_input.distortion == 0. && !input.adaptivity;
+        mesh_input.distortion == 0. && mesh_input.grains == 0 &&
+        !input.adaptivity;
     const bool is_spread = Utilities::MPI::n_mpi_processes(communicator) > 1 &&
                            can_be_spread(input);
     std::vector<std::string> found;

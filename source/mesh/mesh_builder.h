@@ -110,6 +110,7 @@ namespace nsfd
       std::vector<bool> of_cells, of_faces; ///< empty: no such group
     };
     bool has_named_ = false; ///< the mesh has groups of its own
+    std::vector<unsigned int> first_of_groups_; ///< by set of such a mesh
     std::map<std::string, SetsOfGroup> named_;
   };
 

@@ -97,6 +97,8 @@ namespace nsfd
 
     has_named_ = input.mesh.named != nullptr;
     if (has_named_)
+      first_of_groups_ = first_of_groups(*input.mesh.named);
+    if (has_named_)
       for (const auto &[group, sets] : sets_of_groups(*input.mesh.named)) {
         named_[group].of_cells = sets.of_cells;
         named_[group].of_faces = sets.of_faces;
@@ -135,8 +137,12 @@ namespace nsfd
       const std::array<std::string, 2> &names,
       const std::array<types::material_id, 2> &ids) const
   {
-    if (names[0].empty() && names[1].empty())
-      return ids[0] != ids[1];
+    if (names[0].empty() && names[1].empty()) {
+      const auto groups_of = [this](const types::material_id id) {
+        return id < first_of_groups_.size() ? first_of_groups_[id] : id;
+      };
+      return groups_of(ids[0]) != groups_of(ids[1]);
+    }
     const auto in = [&](const unsigned int group, const unsigned int side) {
       return holds_material_id(names[group], ids[side]);
     };

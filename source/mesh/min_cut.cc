@@ -72,9 +72,10 @@ namespace nsfd
     {
       const Vec3 other =
           std::abs(normal[0]) < .9 ? Vec3{{1., 0., 0.}} : Vec3{{0., 1., 0.}};
-      Vec3 u = cross(normal, other);
+      Vec3 u = space::cross(normal, other);
       u = (1. / norm(u)) * u;
-      const Vec3 v = cross(normal, u), middle = .5 * (box.lower + box.upper);
+      const Vec3 v = space::cross(normal, u),
+                 middle = .5 * (box.lower + box.upper);
       const double far = 2. * norm(box.upper - box.lower);
       std::vector<Vec3> polygon = {
           middle + far * (u + v), middle + far * (v - u),
@@ -95,7 +96,8 @@ namespace nsfd
         }
       Vec3 sum{};
       for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
-        sum = sum + cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
+        sum = sum + space::cross(polygon[i] - polygon[0],
+                                 polygon[i + 1] - polygon[0]);
       return .5 * norm(sum);
     }
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace nsfd
 {
@@ -68,6 +69,69 @@ namespace nsfd
         mark(number, g);
     }
     return result;
+  }
+
+  void sort_by_data(NamedMesh &mesh)
+  {
+    if (mesh.element_data.empty())
+      return;
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    std::map<std::vector<double>, unsigned int> set_of_values;
+    std::vector<bool> is_taken(mesh.sets.size(), false);
+    for (auto &[name, values] : mesh.element_data)
+      mesh.cell_data[name].assign(mesh.sets.size(), {{none, none, none}});
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+      unsigned int &set = mesh.cells.set[c];
+      std::vector<double> key = {double(set)};
+      for (const auto &[name, values] : mesh.element_data) {
+        const auto found = values.find(mesh.cells.numbers[c]);
+        key.push_back(found == values.end() ? 0. : 1.);
+        for (unsigned int k = 0; k < 3; ++k)
+          key.push_back(found == values.end() ? 0. : found->second[k]);
+      }
+      const auto [entry, is_new] = set_of_values.emplace(key, set);
+      if (is_new) {
+        if (is_taken[set]) {
+          entry->second = unsigned(mesh.sets.size());
+          const auto groups = mesh.sets[set];
+          mesh.sets.push_back(groups);
+        } else
+          is_taken[set] = true;
+        std::size_t at = 1;
+        for (auto &[name, of_set] : mesh.cell_data) {
+          of_set.resize(mesh.sets.size(), {{none, none, none}});
+          if (key[at] != 0.)
+            of_set[entry->second] = {{key[at + 1], key[at + 2], key[at + 3]}};
+          at += 4;
+        }
+      }
+      set = entry->second;
+    }
+    mesh.element_data.clear();
+  }
+
+  std::vector<unsigned int> first_of_groups(const NamedMesh &mesh)
+  {
+    std::map<std::vector<unsigned int>, unsigned int> first;
+    std::vector<unsigned int> result;
+    for (unsigned int s = 0; s < mesh.sets.size(); ++s)
+      result.push_back(first.emplace(mesh.sets[s], s).first->second);
+    return result;
+  }
+
+  GrainTable grain_table(const NamedMesh &mesh)
+  {
+    GrainTable table;
+    table.cell_data = mesh.cell_data;
+    for (const auto &groups : mesh.sets) {
+      const NamedMesh::Group *grain = nullptr;
+      for (const unsigned int g : groups)
+        if (mesh.groups[g].dimension == mesh.dimension &&
+            (grain == nullptr || mesh.groups[g].n_elements < grain->n_elements))
+          grain = &mesh.groups[g];
+      table.numbers.push_back(grain == nullptr ? 0 : unsigned(grain->number));
+    }
+    return table;
   }
 
   std::string count_of_shapes(const NamedMesh &mesh)

@@ -1,5 +1,8 @@
 #pragma once
 
+#include "nsfd/scene/material_input.h"
+
+#include <array>
 #include <cstddef>
 #include <map>
 #include <string>
@@ -52,6 +55,12 @@ namespace nsfd
     std::vector<Group> groups;
     /// what groups an element belongs to, as indices; the first is empty
     std::vector<std::vector<unsigned int>> sets = {{}};
+    /// three values that a file gives its cells: by name, then by the number
+    /// of the cell in the file
+    std::map<std::string, std::map<std::size_t, std::vector<double>>>
+        element_data;
+    /// the same by name and set, after sort_by_data()
+    std::map<std::string, std::vector<std::array<double, 3>>> cell_data;
     /// what has been changed, and what is odd: a sentence each
     std::vector<std::string> notes;
 
@@ -70,6 +79,19 @@ namespace nsfd
    * means nothing where it is the name of another group.
    */
   std::map<std::string, SetsOfNamedGroup> sets_of_groups(const NamedMesh &mesh);
+
+  /**
+   * Cells of different data become those of different sets, which may have the
+   * same groups. Cells without data have values that are not a number.
+   */
+  void sort_by_data(NamedMesh &mesh);
+
+  /** Per set, the first one that has the same groups. */
+  std::vector<unsigned int> first_of_groups(const NamedMesh &mesh);
+
+  /** The grain of a set is the smallest group of cells in it, 0 if there is
+      none; its number is that of the group. */
+  GrainTable grain_table(const NamedMesh &mesh);
 
   /**
    * Put a mesh as it comes out of a file in order: scaled by @p unit, plane in

@@ -87,6 +87,7 @@ namespace nsfd
       NamedMesh named = read_mesh_file(request, problems);
       for (std::string &problem : problems)
         problem.insert(0, fmt::format("`{}`: ", request.file));
+      sort_by_data(named);
       if (problems.empty())
         check_shapes(reader, named, mesh.split_simplices);
       store_named_mesh(reader, "file", std::move(named), problems, mesh);

@@ -49,10 +49,10 @@ namespace nsfd
       constexpr double low_in_space = .4;
       const Vec3 a = x[1] - x[0], b = x[2] - x[0], c = x[3] - x[0],
                  d = x[2] - x[1], e = x[3] - x[1];
-      const double six_volumes = dot(a, cross(b, c));
+      const double six_volumes = dot(a, space::cross(b, c));
       double largest = 0.;
-      for (const Vec3 &normal :
-           {cross(a, b), cross(b, c), cross(c, a), cross(d, e)})
+      for (const Vec3 &normal : {space::cross(a, b), space::cross(b, c),
+                                 space::cross(c, a), space::cross(d, e)})
         largest = std::max(largest, norm(normal));
       return std::min(1., six_volumes / largest / (low_in_space * size));
     }

@@ -8,6 +8,7 @@
 #include "advice.h"
 #include "core/exit_code.h"
 #include "discretization/cells.h"
+#include "materials/anisotropy.h"
 #include "mesh/mesh_builder.h"
 #include "nsfd/postprocess/observable.h"
 #include "nsfd/scene/scene_input.h"
@@ -55,18 +56,20 @@ namespace nsfd
     std::string describe(const MaterialInput &material,
                          const MaterialExtremes &extremes)
     {
-      if (!material.graded && !material.transverse)
+      if (!material.graded && material.is_isotropic())
         return fmt::format("c_p {:.6g}, c_s {:.6g} m/s", extremes.fastest,
                            extremes.slowest);
-      return fmt::format("{}, waves {:.6g} to {:.6g} m/s, E {} to {}",
-                         material.transverse ? material.graded
-                                                   ? "transversely isotropic, "
-                                                     "graded"
-                                                   : "transversely isotropic"
-                                             : "graded",
-                         extremes.slowest, extremes.fastest,
-                         engineering(extremes.softest.young, "Pa", 4),
-                         engineering(extremes.stiffest.young, "Pa", 4));
+      return fmt::format(
+          "{}{}{}, waves {:.6g} to {:.6g} m/s, E {} to {}",
+          material.is_isotropic() ? "" : material.model_name,
+          material.graded ? material.is_isotropic() ? "graded" : ", graded"
+                          : "",
+          material.anisotropic
+              ? orientation_text(material.anisotropic->orientation)
+              : "",
+          extremes.slowest, extremes.fastest,
+          engineering(extremes.softest.young, "Pa", 4),
+          engineering(extremes.stiffest.young, "Pa", 4));
     }
 
     /** What the advice on all interfaces is computed from. */

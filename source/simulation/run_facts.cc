@@ -83,7 +83,7 @@ namespace nsfd
       case WatchedLine::load_steps:
         return input.statics && input.statics->steps;
       case WatchedLine::large_motion:
-        return input.large_motion && input.time.scheme.at_nodes;
+        return input.iterates() && input.time.scheme.at_nodes;
       default:
         return true;
       }
@@ -154,8 +154,10 @@ namespace nsfd
         const bool of_rows =
             line == WatchedLine::joints || line == WatchedLine::supports;
         GivenEnergy given;
-        given.line =
-            line == WatchedLine::scheme ? "time scheme" : name_of(line);
+        given.line = line == WatchedLine::scheme ? "time scheme"
+                     : line == WatchedLine::large_motion && !input.large_motion
+                         ? "flow"
+                         : name_of(line);
         given.share = share(watch.given[k]);
         given.bound = energy_round_off;
         if (of_rows)

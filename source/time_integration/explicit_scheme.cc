@@ -49,19 +49,7 @@ namespace nsfd
                              block.law_name, block.section()));
     }
 
-    /** What explicit steps of small motions do not know yet. */
-    void refuse_history(SectionReader &reader, const SceneInput &scene)
-    {
-      for (const MaterialInput &material : scene.materials)
-        if (material.kind == MaterialKind::history_dependent)
-          reader.error("scheme",
-                       fmt::format("scheme = explicit with motion = small has "
-                                   "no model = {}",
-                                   material.model_name),
-                       "write motion = large, or scheme = moreau-jean");
-    }
-
-    /** What those of large motions do not know yet. */
+    /** What explicit steps of large motions do not know yet. */
     void refuse_large(SectionReader &reader, const SceneInput &scene)
     {
       const auto refuse = [&reader](const std::string &what) {
@@ -120,13 +108,12 @@ namespace nsfd
 
     void read(SectionReader &reader, SceneInput &scene) const override
     {
-      // steps of small motions have one length, see Leapfrog
-      scene.time.maximum_bisections = scene.large_motion ? 8 : 0;
+      // steps of linear bodies have one length, see Leapfrog
+      scene.time.maximum_bisections = scene.iterates() ? 8 : 0;
       if (scene.large_motion) {
         scene.time.forecast_gamma2 = 1.; // all that is near may touch
         refuse_large(reader, scene);
-      } else
-        refuse_history(reader, scene);
+      }
       const auto front = reader.raw(
           "front viscosity", "auto",
           "share of critical damping where the rate of strain jumps between "

@@ -67,7 +67,7 @@ namespace nsfd
                            ghosts_.cells(),
                            rigid_clusters(discretization_, mesh_, communicator_,
                                           ghosts_.cells(), intact));
-    if (large_)
+    if (input.large_motion)
       rigid.set_places(state);
     rigid.find(groups, supports_);
     rigid.check(input.time.end, groups, supports_);
@@ -188,7 +188,8 @@ namespace nsfd
                        supports_.mask()[groups_->of(corner)] != 0;
     }
     // rigid bodies have turned
-    if (rigid_ ? large_ || communicator_.any(cut_support) : cut_support)
+    if (rigid_ ? input_.large_motion || communicator_.any(cut_support)
+               : cut_support)
       find_supports();
     supports_.resize(groups_->size());
     return n_released;
@@ -295,10 +296,11 @@ namespace nsfd
     {
       const Charge charge(Cost::solver);
       const double tolerance = input_.solver.tolerance;
-      outcome = large_ ? large_->solve(h, last, supports_.mask(), tolerance,
-                                       rigid_.get(), points_, g)
-                       : points_.solve(h, last, supports_.mask(), tolerance, g);
-      if (rigid_ && !large_)
+      outcome = input_.large_motion
+                    ? large_->solve(h, last, supports_.mask(), tolerance,
+                                    rigid_.get(), points_, g)
+                    : points_.solve(h, last, supports_.mask(), tolerance, g);
+      if (rigid_ && !input_.large_motion)
         points_.solve_rigid(input_.solver.tolerance, communicator_, *rigid_, g,
                             outcome);
       if (outcome.impossible) {
@@ -337,7 +339,7 @@ namespace nsfd
         go_back();
         throw rejected;
       };
-      if (rigid_ && large_)
+      if (rigid_ && input_.large_motion)
         if (const std::string body = rigid_->fly(h, g); !body.empty())
           refuse(StepRejected(
               fmt::format("in the step of {:.4g} s at t = {:.6g} s a rigid "
@@ -372,6 +374,8 @@ namespace nsfd
             "that the bodies would get energy from nothing",
             h, old.time));
       }
+      if (forces_->viscous())
+        damp(h, last, energies);
     } else {
       energies.stored -= before_.front.stored / 2.;
       energies.power += front.before;

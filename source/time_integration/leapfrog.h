@@ -150,7 +150,7 @@ namespace nsfd
     StepCheck check_;
     std::unique_ptr<CornerGroups<dim>> groups_;
     std::unique_ptr<RigidGroups<dim>> rigid_;   ///< null: there are none
-    std::unique_ptr<LeapfrogLarge<dim>> large_; ///< null: motions are small
+    std::unique_ptr<LeapfrogLarge<dim>> large_; ///< null: forces are linear
     struct {
       std::vector<double> displacement, velocity;
       FrontViscosity::Powers front;

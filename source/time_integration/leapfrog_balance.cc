@@ -1,5 +1,7 @@
 #include "leapfrog_points.h"
 
+#include "healed_chains.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -43,6 +45,15 @@ namespace nsfd
       const double h = p.time_step * p.theta;
       return h * p.time_step * p.weight[a] * p.majorant_normal[a] * softening >=
              2.;
+    }
+
+    /** Chains of point @p a that are not broken, as hold_of_face_ counts. */
+    template <int dim>
+    unsigned int n_holding(const LeapfrogChains<dim> &chains,
+                           const unsigned int a)
+    {
+      return unsigned(chains.beta[a] >= 1e-3) +
+             unsigned(chains.other.beta[a] >= 1e-3);
     }
 
     /** What comes some turns after the @p row th. */
@@ -166,6 +177,11 @@ namespace nsfd
     }
     put(numerical, w * energies.overlap_released - residual - cohesive_work -
                        spent - w * energies.damage);
+    if (may_heal(p, a)) {
+      const HealedChains<dim> healed(chains_, a, energies);
+      put(stored, -w * healed.dissipated());
+      put(damage, w * healed.dissipated());
+    }
     if (energies.beta < 1e-3 && chains_.beta[a] >= 1e-3) {
       put(broken, w);
     }
@@ -313,17 +329,35 @@ namespace nsfd
     for (std::size_t k = 0; k < moved_.size(); ++k) {
       const unsigned int a = moved_[k];
       fetch(springs_, k);
-      keep_jump(a, springs_[k] ? springs_[k]->law.holds
-                               : chains_.problem.kind[a] == PointKind::rigid &&
-                                     !chains_.solution[a].damages);
-      if (springs_[k])
+      const bool held = springs_[k]
+                            ? springs_[k]->law.holds
+                            : chains_.problem.kind[a] == PointKind::rigid &&
+                                  !chains_.solution[a].damages;
+      if (springs_[k]) {
+        keep_jump(a, held);
         continue;
+      }
       // kind, history or overlap may change, and what opens starts the other
       // chain
       Node &node = nodes_.of(mesh_.node_of_point(chains_.point[a]));
       for (auto &elastic : node.elastic)
         elastic.is_new = true;
-      keep(a, energies_[k]);
+      if (!may_heal(chains_.problem, a)) {
+        keep_jump(a, held);
+        keep(a, energies_[k]);
+      } else {
+        // as in the balance, from what has not been kept yet
+        const HealedChains<dim> healed(chains_, a, energies_[k]);
+        keep_jump(a, held);
+        keep(a, energies_[k]);
+        if (healed.heals()) {
+          unsigned int &hold =
+              hold_of_face_[discretization_.points().face_of[chains_.point[a]]];
+          hold -= n_holding(chains_, a);
+          healed.keep(chains_);
+          hold += n_holding(chains_, a);
+        }
+      }
     }
     OneStepProblem<dim> &p = chains_.problem;
     const double h = p.time_step * p.theta;

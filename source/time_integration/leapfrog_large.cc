@@ -34,8 +34,9 @@ namespace nsfd
       : input_(input), discretization_(discretization), mesh_(mesh),
         communicator_(communicator), forces_(forces)
   {
-    if (!input.contacts.empty() || !input.obstacles.empty() ||
-        input.has_rigid_bodies())
+    if (input.large_motion &&
+        (!input.contacts.empty() || !input.obstacles.empty() ||
+         input.has_rigid_bodies()))
       contacts_ = std::make_unique<LeapfrogContacts<dim>>(input, discretization,
                                                           all, communicator);
   }
@@ -44,7 +45,7 @@ namespace nsfd
   void LeapfrogLarge<dim>::set_initial(State &state) const
   {
     state.material_history = forces_.histories().at_rest();
-    if (input_.has_rigid_bodies()) {
+    if (input_.large_motion && input_.has_rigid_bodies()) {
       const BodyLayout<dim> layout(input_, discretization_);
       RigidMotions<dim>(input_, discretization_, layout, communicator_)
           .set_nearest(state);
@@ -76,6 +77,8 @@ namespace nsfd
                                  LeapfrogPoints<dim> &points,
                                  LeapfrogEnergies &energies)
   {
+    if (!input_.large_motion)
+      return;
     turned_ += communicator_.sum(
         points.turn([this](const std::size_t i) { return forces_.frame(i); },
                     rigid, groups));

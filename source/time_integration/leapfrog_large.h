@@ -18,6 +18,7 @@ namespace nsfd
   /**
    * What motions of any size add to the steps of Leapfrog: points turn with
    * their faces, surfaces meet others, and forces are no linear function. In
+   * small motions with materials that have a history only the last of these. In
    *
    *   E_{k+1/2} = v.M v/2 + U(q_k) - (h/2) f.v
    *

@@ -89,7 +89,7 @@ namespace nsfd
     report.changes.taken[std::size_t(WatchedLine::plastic)] = bodies.plastic;
     close_balance(old, next, report);
     double scale = 4. * std::abs(energy.kinetic);
-    if (rigid_ && large_) { // bodies at rest have no other energy
+    if (rigid_ && input_.large_motion) { // bodies at rest have no other energy
       scale = std::max(scale, 2. * rigid_->sizes().motion);
       relate_defect(scale, next, report);
     }
@@ -113,7 +113,7 @@ namespace nsfd
     // bodies at rest: their contacts are solved to
     // LeapfrogContacts::part_of_tolerance of the tolerance, and what that
     // leaves of the work is no energy either
-    if (rigid_ && large_)
+    if (rigid_ && input_.large_motion)
       report.changes.terms += LeapfrogContacts<dim>::part_of_tolerance *
                               input_.solver.tolerance *
                               rigid_->sizes().impulses / round_off_of_step(1.);
@@ -156,7 +156,7 @@ namespace nsfd
       loads_.cracks()->show(ghosts_.own_points(), state);
     if (large_)
       large_->show(state);
-    if (rigid_ && large_)
+    if (rigid_ && input_.large_motion)
       rigid_->show(state);
     const auto *layer = ghosts_.layer();
     if (!layer)

@@ -61,7 +61,7 @@ namespace nsfd
           discretization_, mesh_, communicator_, ghosts_.cells(),
           rigid_clusters(discretization_, mesh_, communicator_, ghosts_.cells(),
                          intact));
-    if (rigid_ && large_)
+    if (rigid_ && input_.large_motion)
       rigid_->set_places(state);
     faces_.start(std::move(intact));
     groups_->gather(state.displacement, groups_->displacement);

@@ -3,6 +3,7 @@
 #include "common_balance.h"
 #include "step_data.h"
 
+#include "nonsmooth/healing.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
@@ -94,6 +95,8 @@ namespace nsfd
         point_energies<dim>(problem_, i, U, evaluation_.solutions[i].frozen);
     add_law(i, U_theta, energies);
     keep_history(i, energies);
+    if (may_heal(problem_, i))
+      heal(i, energies.beta);
     add_penetration(i);
   }
 
@@ -243,6 +246,29 @@ namespace nsfd
     if (solution.damages &&
         past_peak(law, problem_.opening_factor[i], energies.history))
       beyond_unique |= uniqueness_.ratio(problem_, i, problem_.time_step) >= 1.;
+  }
+
+  /** At the end of the step, under its mean pressure. */
+  template <int dim>
+  void PointBalance<dim>::heal(const std::size_t i, const double beta)
+  {
+    if (!next_.contact[i] || (next_.kind[i] != PointKind::cohesive &&
+                              next_.kind[i] != PointKind::free))
+      return;
+    const double w = problem_.weight[i], h = problem_.time_step;
+    double *jump = &next_.jump[i * dim];
+    const Healing healing = healing_of<dim>(
+        problem_, i, std::min(beta, next_.beta[i]), next_.opening_max[i], jump,
+        evaluation_.solutions[i].contact_impulse / (w * h), h);
+    if (!healing.heals)
+      return;
+    put(stored, -w * healing.dissipated);
+    put(damage, w * healing.dissipated);
+    next_.kind[i] = PointKind::cohesive;
+    next_.opening_max[i] = healing.opening_max;
+    next_.beta[i] = healing.beta;
+    for (unsigned int c = 1; c < dim; ++c)
+      jump[c] *= healing.slip_share;
   }
 
   /**

@@ -158,6 +158,21 @@ namespace nsfd
      * opening @p d > @p d_m, from that of @p d_m; between the two.
      */
     virtual double delayed_opening(double d_m, double d, double time) const;
+
+    /**
+     * What is pressed grows together again: healed_opening(). Of intrinsic laws
+     * with one damage scalar.
+     */
+    virtual bool heals() const { return false; }
+
+    /**
+     * The opening d_m that is left of @p d_m, which may be infinite, where the
+     * faces are pressed for @p time seconds by @p pressure > 0, in Pa: at most
+     * @p d_m and at least elastic_limit(). Two times one after the other are
+     * their sum.
+     */
+    virtual double healed_opening(double d_m, double pressure,
+                                  double time) const;
   };
 
   /**

@@ -129,6 +129,36 @@ namespace nsfd::laws
     return a * a;
   }
 
+  /** How fast the intensity of an adhesion grows where it is pressed. */
+  struct Healing {
+    double time = 0.; ///< s; 0: it never does
+    double pressure = 0.;
+
+    /** 1/s, over the driving force of the surface energy. */
+    double rate(const double under) const
+    {
+      return (under >= pressure ? 1. : under / pressure) / time;
+    }
+  };
+
+  inline Healing read_healing(SectionReader &reader)
+  {
+    Healing healing;
+    const std::string text = "Of a pressed face, in which the intensity grows "
+                             "from 0 to 1, s; without it nothing heals";
+    if (!reader.optional("healing time", text)) {
+      reader.refuse({"healing pressure"}, "there is no `healing time`");
+      return healing;
+    }
+    healing.time =
+        reader.number("healing time", "", units::time, Range::positive(), text);
+    healing.pressure = reader.number(
+        "healing pressure", "0", units::pressure, Range::non_negative(),
+        "Below it a face heals slower in proportion, Pa; 0: the same under any "
+        "pressure");
+    return healing;
+  }
+
   /** C_T / C_N. */
   inline double read_stiffness_ratio(SectionReader &reader,
                                      const double normal_stiffness)

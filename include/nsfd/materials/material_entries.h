@@ -38,7 +38,11 @@ namespace nsfd::materials
 
   /** Entries of other models, where they stand in the block of this one. */
   void refuse_isotropic(SectionReader &reader, const std::string &reason);
-  void refuse_axis(SectionReader &reader);
+  void refuse_axis(SectionReader &reader); ///< of all anisotropic models
+  void refuse_transverse(SectionReader &reader);
+  void refuse_cubic(SectionReader &reader);
+  void refuse_orthotropic(SectionReader &reader);
+  void refuse_orientation(SectionReader &reader);
   void refuse_viscosity(SectionReader &reader, const std::string &reason);
   void refuse_flow(SectionReader &reader);
   void refuse_rigid_bodies(SectionReader &reader, const std::string &reason);

@@ -17,6 +17,7 @@ namespace nsfd
     unsigned int dimension = 2;
     bool plane_stress = false; ///< in the plane only
     bool large_motion = false;
+    const GrainTable *grains = nullptr; ///< null: the mesh is not known
   };
 
   /**

@@ -5,9 +5,11 @@
 #include "nsfd/scene/where_input.h"
 
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace nsfd
 {
@@ -43,6 +45,64 @@ namespace nsfd
     double axial_shear = 0.;
   };
 
+  /** Bunge's phi_1, Phi, phi_2 in degrees: about axis 3, the new axis 1, the
+      new axis 3, from the axes of the scene to those of the crystal. */
+  using EulerAngles = std::array<double, 3>;
+
+  /**
+   * The grains of a mesh. A cell has an id: its set of groups where the mesh
+   * has groups of its own, else the number of its body, from 0, or its material
+   * id.
+   */
+  struct GrainTable {
+    std::vector<unsigned int> numbers; ///< of the grain, by id; empty: the id
+    /// what a mesh file says of its cells, by name, then by id
+    std::map<std::string, std::vector<EulerAngles>> cell_data;
+  };
+
+  /** How the axes of a crystal lie in the scene. */
+  struct OrientationInput {
+    enum class Kind {
+      angles,   ///< of x, y, z
+      random,   ///< per grain, uniform in SO(3)
+      in_plane, ///< per grain, uniform about z
+      table,    ///< per grain
+      cell_data ///< per id
+    };
+    Kind kind = Kind::angles;
+    std::array<Expression, 3> angles; ///< degrees
+    unsigned int seed = 1;
+    std::map<unsigned int, EulerAngles> of_grain; ///< kind table
+    std::vector<EulerAngles> of_id;               ///< kind cell_data
+    std::vector<unsigned int> numbers;            ///< as in GrainTable
+    std::string source;                           ///< of table or data, a name
+
+    bool depends_on_place() const
+    {
+      return kind == Kind::angles &&
+             !(angles[0].is_constant() && angles[1].is_constant() &&
+               angles[2].is_constant());
+    }
+    /** Not the same in all cells. */
+    bool varies() const { return kind != Kind::angles || depends_on_place(); }
+  };
+
+  /** Hooke's matrix, Pa: rows and columns xx, yy, zz, xy, xz, yz; sigma_ij =
+      C_ijkl eps_kl has the entries C_ijkl. */
+  using HookeMatrix = std::array<std::array<double, 6>, 6>;
+
+  /** Small strain, any symmetry: cubic or orthotropic in the axes of the
+      crystal. */
+  struct AnisotropicInput {
+    HookeMatrix stiffness{}; ///< in the axes of the crystal
+    OrientationInput orientation;
+    /// over all directions in space, Pa: rho c^2 of plane waves
+    double fastest = 0., slowest = 0.;
+    /// Young's modulus, and the mean Poisson's ratio of that direction
+    double stiffest_young = 0., stiffest_poisson = 0.;
+    double softest_young = 0., softest_poisson = 0.;
+  };
+
   /** Constants that differ from place to place, of x, y, z. */
   struct GradedInput {
     Expression young, poisson, density;
@@ -72,10 +132,23 @@ namespace nsfd
     bool rigid = false;                             ///< of that kind
     RigidInput rigid_bodies;
     /// not a number where there is no such constant: of what is graded, and E
-    /// and nu of transversely isotropic materials
+    /// and nu of anisotropic materials
     double young = 0., poisson = 0., density = 0.;
     std::optional<GradedInput> graded; ///< if one of them depends on the place
     std::optional<TransverseInput> transverse;
+    std::shared_ptr<const AnisotropicInput> anisotropic; ///< null: it is not
+    /** Cells of the block have constants of their own. */
+    bool varies() const
+    {
+      return graded || (anisotropic && anisotropic->orientation.varies());
+    }
+    /** Within a cell, too. */
+    bool varies_in_cells() const
+    {
+      return graded ||
+             (anisotropic && anisotropic->orientation.depends_on_place());
+    }
+    bool is_isotropic() const { return !transverse && !anisotropic; }
     /// eta, zeta in Pa s of the stress 2 eta dev(rate) + zeta tr(rate) 1
     double shear_viscosity = 0., bulk_viscosity = 0.;
     bool is_viscous() const

@@ -20,6 +20,7 @@ namespace nsfd
     unsigned int refinements = 0;
     double distortion = 0.; ///< share of the cell size, interior vertices
     unsigned int seed = 1;
+    unsigned int grains = 0; ///< around random places; 0: none are made
     /// notched plate: a slot of `notch_width` (0: none removed, use a
     /// pre-crack) from the left side to `notch_length` at height `notch_height`
     double notch_length = 0., notch_width = 0., notch_height = 0.;

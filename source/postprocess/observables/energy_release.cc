@@ -173,14 +173,14 @@ namespace nsfd
                     [](const auto &material) { return material.rigid; }))
       reader.error("type", "no material is elastic: no energy is released");
     for (const MaterialInput &material : scene.materials)
-      if (material.graded || material.plastic || material.is_viscous() ||
+      if (material.varies() || material.plastic || material.is_viscous() ||
           material.initial_stress.is_given())
         reader.error(
             "type",
             fmt::format("contours of the energy release rate agree in uniform "
                         "elastic bodies; `Material: {}` {}",
                         material.name,
-                        material.graded         ? "differs from place to place"
+                        material.varies()       ? "differs from place to place"
                         : material.plastic      ? "flows"
                         : material.is_viscous() ? "is viscous"
                                                 : "has an initial stress"),
