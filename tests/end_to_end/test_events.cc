@@ -112,8 +112,9 @@ end
     }
   } // namespace
 
-  // A place that is held does no work, from the step after the event on; it is
-  // where the formula was then.
+  // A place that is held does no work, and is where the formula was at the
+  // event. The theta scheme comes there by halves, its error falls by sqrt(1/2)
+  // per step.
   TEST(Events, MotionsHold)
   {
     for (const bool space : {false, true})
@@ -132,9 +133,11 @@ end
         const double time = history["time"][event];
         EXPECT_EQ(result.counter("hold_time_left"), time);
         const double u = 2. * time;
-        for (std::size_t i = event + 1; i < history.size(); ++i)
-          EXPECT_NEAR(history["work"][i], history["work"][event],
-                      1e-11 * history["work"][event])
+        const std::size_t rest = event + (set.empty() ? 100 : 1);
+        ASSERT_LT(rest + 5, history.size());
+        for (std::size_t i = rest + 1; i < history.size(); ++i)
+          EXPECT_NEAR(history["work"][i], history["work"][rest],
+                      1e-11 * history["work"][rest])
               << i;
         const History side = observed(result, "side");
         EXPECT_NEAR(side[space ? "displacement_z" : "displacement_y"].back(), u,
@@ -177,7 +180,7 @@ end
       const std::size_t event = first_break(result.history);
       const History side = observed(result, "side");
       ASSERT_LT(event + 10, side.size());
-      EXPECT_EQ(side["velocity_y"].back(), 0.);
+      EXPECT_NEAR(side["velocity_y"].back(), 0., 2. * 1e-8); // of the solver
       // the theta scheme goes on for half a step
       const double u = side["displacement_y"][event + 2];
       EXPECT_NEAR(side["displacement_y"].back(), u, 1e-12 * u);
@@ -201,45 +204,52 @@ end
       const auto at = std::size_t(std::find(times.begin(), times.end(), time) -
                                   times.begin());
       ASSERT_LT(at, times.size());
-      // faces of 0.5 mm: two points, all of one or of some
-      EXPECT_GE(area[at], 0.5e-3 * (1. - 1e-12));
       EXPECT_LT(area[at - 1], area[at]);
-      EXPECT_GT(time, times[first_break(result.history)]);
+      const double first = times[first_break(result.history)];
+      if (more.empty()) { // faces of 0.5 mm have two points
+        EXPECT_GE(area[at], 0.5e-3 * (1. - 1e-12));
+        EXPECT_GT(time, first);
+      } else // the point at 0.5 mm is the last one of its face
+        EXPECT_EQ(time, first);
     }
   }
 
   // The same on two ranks, and over a restart before and after the event.
   TEST(Events, RanksAndRestarts)
   {
+    const auto run_strip = [](const Workspace &workspace, const Launch &what) {
+      write_text(what.file, strip);
+      return good_run(workspace, "whole", what);
+    };
     for (const std::string event : {"first break", "first face"})
       for (const auto &more :
            {std::vector<std::string>(), explicit_steps(), equilibria()}) {
         SCOPED_TRACE(event + ", " + (more.empty() ? "moreau-jean" : more[0]));
-        const Workspace workspace;
-        const auto file = workspace.path() / "strip.prm";
-        write_text(file, strip);
         auto set = more;
         set.push_back("Boundary: left/hold at=" + event);
-        const Result one = good_run(workspace, "one", {file, set});
-        ASSERT_TRUE(one.completed());
-        Launch two = {file, set};
-        two.ranks = 2;
-        const Result ranks = good_run(workspace, "two", two);
-        EXPECT_EQ(one.counter("hold_time_left"),
-                  ranks.counter("hold_time_left"));
-        if (!more.empty() && more[0] == "Time/scheme=explicit") {
-          EXPECT_EQ(one.history_text, ranks.history_text);
+        double time = 0.;
+        {
+          const Workspace workspace;
+          Launch one = {workspace.path() / "strip.prm", set};
+          const Result serial = run_strip(workspace, one);
+          ASSERT_TRUE(serial.completed());
+          time = serial.counter("hold_time_left");
+          one.ranks = 2;
+          const Result ranks = good_run(workspace, "two", one);
+          EXPECT_EQ(ranks.counter("hold_time_left"), time);
+          if (!more.empty() && more[0] == "Time/scheme=explicit") {
+            EXPECT_EQ(serial.history_text, ranks.history_text);
+          }
         }
-        for (const bool after : {false, true}) {
-          // go_on() stops at 0.8 of the steps
-          auto shorter = set;
-          const double end = one.counter("hold_time_left") * (after ? 2. : 1.1);
-          shorter.push_back("Time/end=" + std::to_string(1e6 * end) + " us");
-          const Result whole =
-              good_run(workspace, after ? "after" : "before", {file, shorter});
+        for (const double share : {1.1, 2.}) { // go_on() stops at 0.8 of it
+          const Workspace workspace;
+          Launch one = {workspace.path() / "strip.prm", set};
+          one.set.push_back("Time/end=" + std::to_string(1e6 * share * time) +
+                            " us");
+          const Result whole = run_strip(workspace, one);
           Result resumed;
-          ASSERT_NO_FATAL_FAILURE(go_on(workspace, storing({file, shorter}, 5),
-                                        {file, shorter}, whole, resumed));
+          ASSERT_NO_FATAL_FAILURE(
+              go_on(workspace, storing(one, 5), one, whole, resumed));
           EXPECT_EQ(whole.history_text, resumed.history_text);
         }
       }
@@ -285,6 +295,6 @@ end
     refused(replaced(strip, law, ""), "nothing breaks");
     refused(replaced(replaced(strip, law, ""), "  set end    = 25 us\n",
                      "  set end    = 25 us\n  set end at rest = 5\n"),
-            "Time/end at rest");
+            "`end at rest` does not belong here");
   }
 } // namespace end_to_end::test_events
