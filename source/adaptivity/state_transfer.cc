@@ -31,6 +31,8 @@ namespace nsfd
       to.time = from.time;
       to.last_step = from.last_step;
       to.kept_step = from.kept_step;
+      to.clock = from.clock;
+      to.growth_step = from.growth_step;
       to.viscous_traction = from.viscous_traction;
       to.energy = from.energy;
       to.initial_energy = from.initial_energy;

@@ -63,6 +63,7 @@ namespace nsfd
     // plug-ins themselves are compared, not where they are named
     static const std::vector<std::string> free = {"plug-ins",
                                                   "Time/end",
+                                                  "Time/end at rest",
                                                   "Time/step",
                                                   "Time/dynamic step",
                                                   "Time/maximum bisections",

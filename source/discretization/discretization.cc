@@ -310,10 +310,11 @@ namespace nsfd
 
   template <int dim>
   void Discretization<dim>::add_loads(const double t,
-                                      std::vector<double> &forces) const
+                                      std::vector<double> &forces,
+                                      const LoadClock &clock) const
   {
     std::vector<double> nodal(cells_->n_nodal(), 0.);
-    loads_->add(*cells_, t, nodal);
+    loads_->add(*cells_, t, clock, nodal);
     for (std::size_t b = 0; b < bodies().size(); ++b)
       add_to_unknowns(cells_->body_class(b), cells_->class_shape(b).modes,
                       nodal.data() + cells_->first_node[b] * dim,

@@ -7,6 +7,7 @@
 #include "mesh/body_table.h"
 #include "mesh/cell_set.h"
 #include "nsfd/discretization/point_origin.h"
+#include "state/load_clock.h"
 
 #include <deal.II/base/point.h>
 
@@ -117,9 +118,11 @@ namespace nsfd
 
     /**
      * Generalised forces at time @p t of gravity, body forces, tractions and
-     * pressures, in N (N per metre of depth in two dimensions).
+     * pressures, in N (N per metre of depth in two dimensions). Sides that
+     * @p clock has stopped keep theirs.
      */
-    void add_loads(double t, std::vector<double> &forces) const;
+    void add_loads(double t, std::vector<double> &forces,
+                   const LoadClock &clock = {}) const;
     const Loads<dim> &loads() const { return *loads_; }
 
     /**

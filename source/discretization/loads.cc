@@ -50,7 +50,7 @@ namespace nsfd
 
   template <int dim>
   void Loads<dim>::add(const Cells<dim> &cells, const double t,
-                       std::vector<double> &nodal) const
+                       const LoadClock &clock, std::vector<double> &nodal) const
   {
     add_volume(cells, t, nodal);
     if (initial_stress_)
@@ -58,6 +58,7 @@ namespace nsfd
         nodal[k] += initial_stress_->forces()[k];
     for (const auto &load : faces_) {
       const auto &boundary = input_.boundaries[load.boundary];
+      const double its_time = clock.at(load.boundary, t);
       const auto of_body = cells.shape(load.body);
       const BodyShape<dim> &shape = *of_body;
       const FaceGeometry<dim> face(shape.reference, shape.corners, load.face);
@@ -72,11 +73,11 @@ namespace nsfd
         const double JxW = n.norm() * quadrature.weight(q);
         const Point<dim> x = cells.place(load.body, face.position(xi));
         const double p =
-            boundary.has_pressure ? boundary.pressure.at(x, t) : 0.;
+            boundary.has_pressure ? boundary.pressure.at(x, its_time) : 0.;
         for (unsigned int c = 0; c < dim; ++c) {
           double f = -p * n[c] * quadrature.weight(q);
           if (boundary.has_traction)
-            f += JxW * boundary.traction[c].at(x, t);
+            f += JxW * boundary.traction[c].at(x, its_time);
           for (unsigned int i = 0; i < shape.n_nodes; ++i)
             nodal[(cells.first_node[load.body] + i) * dim + c] +=
                 f * cells.element->shape_value(i, face.in_reference_cell(xi));

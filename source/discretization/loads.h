@@ -2,6 +2,7 @@
 
 #include "absorbing_sides.h"
 #include "initial_stress.h"
+#include "state/load_clock.h"
 
 #include <memory>
 #include <vector>
@@ -41,8 +42,9 @@ namespace nsfd
       return absorbing_faces_;
     }
 
-    /** Add those at time @p t to a nodal vector. */
-    void add(const Cells<dim> &cells, double t,
+    /** Add those at time @p t to a nodal vector; sides that @p clock has
+        stopped keep theirs. */
+    void add(const Cells<dim> &cells, double t, const LoadClock &clock,
              std::vector<double> &nodal) const;
 
   private:

@@ -164,6 +164,7 @@ namespace nsfd
       read_discretization(file, errors, *scene);
       read_boundaries(file, errors, *scene);
       read_obstacles(file, errors, *scene);
+      read_events(file, errors, *scene);
       read_contacts(file, errors, *scene);
       read_pins(file, errors, *scene);
       read_loads(file, errors, *scene);

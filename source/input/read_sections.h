@@ -90,6 +90,11 @@ namespace nsfd
                       SceneInput &scene);
   void read_loads(ParameterFile &file, InputErrors &errors, SceneInput &scene);
 
+  /** What Boundary blocks do when a crack begins: after all laws are known. */
+  void read_events(ParameterFile &file, InputErrors &errors, SceneInput &scene);
+  /** A sentence; empty if something may break. */
+  std::string why_nothing_breaks(const SceneInput &scene);
+
   /** There are materials, and all of them are rigid. */
   bool no_body_deforms(const SceneInput &scene);
 

@@ -90,6 +90,17 @@ namespace nsfd
       return true;
     }
 
+    void read_rest(SectionReader &reader, SceneInput &scene)
+    {
+      const std::string reason = why_nothing_breaks(scene);
+      if (!reason.empty())
+        return reader.refuse({"end at rest"}, reason);
+      scene.time.rest_steps = reader.integer(
+          "end at rest", "0", 0, 1000000000,
+          "accepted steps without a point that breaks, after the first one "
+          "that has, with which the run ends before `end`; 0: never");
+    }
+
     /** Not every scheme iterates within a step; true if this is one of them. */
     bool refuse_scheme(SectionReader &reader, const SceneInput &scene,
                        const TimeScheme &scheme)
@@ -160,6 +171,7 @@ namespace nsfd
       reader.refuse({"equilibrium tolerance"},
                     "no equilibrium is computed in this scene");
     scheme->read_steps(reader, scene);
+    read_rest(reader, scene);
     refuse_other_entries(reader, time.scheme_name);
     scheme->read(reader, scene);
   }

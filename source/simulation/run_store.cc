@@ -63,6 +63,7 @@ namespace nsfd
                                       const bool all_integrators)
   {
     parts_.steps.serialize(archive, all_integrators);
+    parts_.events.serialize(archive);
     if (with_solvers && all_integrators)
       parts_.steps.serialize_solvers(archive);
     if (parts_.adaptive)

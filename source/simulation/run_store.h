@@ -1,5 +1,6 @@
 #pragma once
 
+#include "crack_events.h"
 #include "mesh_changes.h"
 #include "run_recorder.h"
 
@@ -13,7 +14,7 @@ namespace nsfd
     RunParts(const SceneInput &scene, const RunOptions &run_options,
              const Communicator &ranks)
         : input(scene), options(run_options), communicator(ranks),
-          steps(input, model, communicator),
+          steps(input, model, communicator), events(input),
           recorder(input, options, model, steps, communicator)
     {
     }
@@ -23,6 +24,7 @@ namespace nsfd
     const Communicator &communicator;
     Model<dim> model;
     TimeStepping<dim> steps;
+    CrackEvents<dim> events;
     RunRecorder<dim> recorder;
     std::unique_ptr<MeshChanges<dim>> adaptive; ///< or null
     State state;

@@ -45,6 +45,7 @@ namespace nsfd
       int start();
       int step_to_the_end();
       bool take_steps(bool &stopped, std::string &failure);
+      bool is_over();
       bool advance(State &next, std::string &failure);
       bool change_mesh(State &next);
       void accept(State &next, const StepReport &report, double time_step);
@@ -169,7 +170,7 @@ namespace nsfd
         State next;
         if (!steps_.integrator().keeps_motion())
           next = state_;
-        while (failure.empty() && !steps_.finished(state_) && trial.goes_on()) {
+        while (failure.empty() && !is_over() && trial.goes_on()) {
           const unsigned int step = state_.step;
           advance(next, failure);
           if (state_.step > step)
@@ -208,14 +209,15 @@ namespace nsfd
         model_.delassus->reinit(model_.control->step(),
                                 input_.time.bulk_theta());
       charge_memory("blocks of the bodies");
-      if (!input_.mesh_changes()) {
+      if (!input_.mesh_changes())
         state_ = model_.initial_state();
-        return true;
-      }
-      state_ =
-          found ? parts_.adaptive->restore(stored_cells(*found, communicator_))
+      else
+        state_ =
+            found
+                ? parts_.adaptive->restore(stored_cells(*found, communicator_))
                 : parts_.adaptive->start();
-      return recorder_.find_observables();
+      parts_.events.start(*model_.discretization, communicator_, state_);
+      return !input_.mesh_changes() || recorder_.find_observables();
     }
 
     template <int dim>
@@ -280,7 +282,7 @@ namespace nsfd
       if (!steps_.integrator().keeps_motion())
         next = state_;
       charge_memory("state and history of the points");
-      while (!steps_.finished(state_)) {
+      while (!is_over()) {
         if (communicator_.any(stop_request::requested())) {
           stopped = true;
           return true;
@@ -289,6 +291,13 @@ namespace nsfd
           return false;
       }
       return true;
+    }
+
+    /** The end is reached, or the crack has come to rest. Collective. */
+    template <int dim>
+    bool Simulation<dim>::is_over()
+    {
+      return parts_.events.ends_run(state_) || steps_.finished(state_);
     }
 
     /** Take a step, or shorten the next one; false with the reason. */
@@ -334,9 +343,14 @@ namespace nsfd
       std::swap(state_, next);
       if (steps_.integrator().keeps_motion())
         swap_motion(state_, next); // there is one of it
+      const auto news =
+          parts_.events.accept(next, steps_.integrator(),
+                               *model_.discretization, communicator_, state_);
       {
         const Charge charge(Cost::output);
         recorder_.record(next, state_, report, h); // next: before the step
+        for (const std::string &sentence : news)
+          recorder_.message(sentence);
       }
       if (parts_.adaptive) {
         const Charge charge(Cost::set_up);
@@ -386,6 +400,7 @@ namespace nsfd
       std::map<std::string, double> counters;
       if (parts_.adaptive)
         parts_.adaptive->fill_counters(counters);
+      parts_.events.fill_counters(state_, counters);
       certified_ = recorder_.finish(state_, failure, store_->n_failed(),
                                     std::move(counters));
     }

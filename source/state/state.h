@@ -1,5 +1,7 @@
 #pragma once
 
+#include "load_clock.h"
+
 #include "nsfd/records/run_record.h"
 #include "nsfd/state/point_kind.h"
 
@@ -30,6 +32,9 @@ namespace nsfd
     double time = 0.;
     double last_step = 0.; ///< that led here, s; 0 at the start
     double kept_step = 0.; ///< of explicit forces, see ElasticForces, s
+    LoadClock clock;       ///< of the formulas of Boundary blocks
+    /// at which a point broke last; 0: none has
+    unsigned int growth_step = 0;
     std::vector<double> displacement, velocity;
     std::vector<double> jump;              ///< u, m
     std::vector<double> relative_velocity; ///< U, m/s

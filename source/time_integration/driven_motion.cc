@@ -219,6 +219,24 @@ namespace nsfd
     return sum;
   }
 
+  template <int dim>
+  double DrivenMotion<dim>::velocity_at(const Expression &velocity,
+                                        const std::size_t i, const double t,
+                                        const LoadClock &clock) const
+  {
+    return clock.rests(discretization_.origins()[i].block, t)
+               ? 0.
+               : at(velocity, i, t);
+  }
+
+  template <int dim>
+  double DrivenMotion<dim>::place_at(const Expression &displacement,
+                                     const std::size_t i, const double t,
+                                     const LoadClock &clock) const
+  {
+    return at(displacement, i, clock.at(discretization_.origins()[i].block, t));
+  }
+
   template class DrivenMotion<2>;
   template class DrivenMotion<3>;
 } // namespace nsfd

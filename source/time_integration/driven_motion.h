@@ -33,6 +33,12 @@ namespace nsfd
 
     /** @p motion as the cell of point @p i takes it. */
     double at(const Expression &motion, std::size_t i, double t) const;
+    /** The same of a velocity, until @p clock has stopped it. */
+    double velocity_at(const Expression &velocity, std::size_t i, double t,
+                       const LoadClock &clock) const;
+    /** The same of a displacement. */
+    double place_at(const Expression &displacement, std::size_t i, double t,
+                    const LoadClock &clock) const;
 
   private:
     /** A node of the cell, and its share in the point. */

@@ -176,7 +176,7 @@ namespace nsfd
     EquilibriumReport report;
     std::vector<double> forces_old(old.velocity.size(), 0.);
     if (discretization_.loads().any())
-      discretization_.add_loads(old.time, forces_old);
+      discretization_.add_loads(old.time, forces_old, old.clock);
     find(old, time, way, next, report.step);
     report.stable = relaxation_->softening() < 1.;
     const EnergyLeft left =

@@ -25,17 +25,19 @@ namespace nsfd
   FreeMotion<dim>::~FreeMotion() = default;
 
   template <int dim>
-  bool FreeMotion<dim>::set_loads(const double time)
+  bool FreeMotion<dim>::set_loads(const double time, const LoadClock &clock)
   {
     if (!discretization_.loads().any())
       return false;
     if (loads_known_ &&
-        (!discretization_.loads().depend_on_time() || loads_time_ == time))
+        (!discretization_.loads().depend_on_time() ||
+         (loads_time_ == time && loads_clock_.stopped == clock.stopped)))
       return false;
     std::fill(loads_.begin(), loads_.end(), 0.);
-    discretization_.add_loads(time, loads_);
+    discretization_.add_loads(time, loads_, clock);
     loads_known_ = true;
     loads_time_ = time;
+    loads_clock_ = clock;
     return true;
   }
 

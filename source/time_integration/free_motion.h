@@ -33,10 +33,10 @@ namespace nsfd
     ~FreeMotion();
 
     /**
-     * Loads at @p time. Assembled again only if they depend on it: true if they
-     * were.
+     * Loads at @p time by the @p clock of the state before. Assembled again
+     * only if they depend on it: true if they were.
      */
-    bool set_loads(double time);
+    bool set_loads(double time, const LoadClock &clock);
     /** By unknown, N. */
     const std::vector<double> &loads() const { return loads_; }
 
@@ -86,5 +86,6 @@ namespace nsfd
     std::vector<double> loads_, velocity_, work_;
     bool loads_known_ = false;
     double loads_time_ = 0.;
+    LoadClock loads_clock_;
   };
 } // namespace nsfd

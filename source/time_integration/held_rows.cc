@@ -22,6 +22,7 @@ namespace nsfd
   void HeldRows<dim>::start(const State &old)
   {
     start_ = old.time;
+    clock_ = old.clock;
     const Communicator &all = parts_.delassus.communicator();
     is_mean_ = !parts_.input.pins.empty() || all.any(has_turning_arms(old));
     is_impact_ = old.last_step == 0. && begins_otherwise(old);
@@ -114,7 +115,8 @@ namespace nsfd
     constexpr double aside = 1e-6, much = 0.1, jump = 1e-3;
     const DrivenMotion<dim> &motion = parts_.step_problem.motion();
     const auto at = [&](const double steps) {
-      return motion.at(velocity, point, start_ + steps * time_step);
+      return motion.velocity_at(velocity, point, start_ + steps * time_step,
+                                clock_);
     };
     const double now = at(0.);
     double given = now;

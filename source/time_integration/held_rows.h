@@ -55,6 +55,7 @@ namespace nsfd
     const MovingBodies<dim> &bodies_;
     // of the step
     double start_ = 0.;
+    LoadClock clock_;
     bool is_mean_ = false;   ///< what joints, and supports of their bodies, ask
     bool is_impact_ = false; ///< nothing asks for a mean velocity
   };

@@ -225,7 +225,7 @@ namespace nsfd
         "springs that carry an initial stress are beyond their place at rest",
         "write scheme = moreau-jean, or begin with a motion");
     supports_.find(groups, {});
-    loads_.start(state.time, groups);
+    loads_.start(state.time, state.clock, groups);
     given_ = loads_.sum(state.time, nullptr, springs_.chains(), groups);
     set_inverse();
     supports_.set_places(state.time, groups);

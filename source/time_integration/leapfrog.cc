@@ -289,7 +289,8 @@ namespace nsfd
                     energies);
     {
       const Charge charge(Cost::free_motion);
-      loads_.move_to(old.time, g);
+      loads_.move_to(old.time, old.clock, g);
+      supports_.set_clock(old.clock);
       move_freely(kick, old.time, h);
     }
     typename LeapfrogPoints<dim>::Outcome outcome;

@@ -33,9 +33,10 @@ namespace nsfd
   }
 
   template <int dim>
-  void LeapfrogLoads<dim>::start(const double time,
+  void LeapfrogLoads<dim>::start(const double time, const LoadClock &clock,
                                  const CornerGroups<dim> &groups)
   {
+    clock_ = clock;
     if (discretization_.loads().any())
       set(time, groups);
     if (absorbing_)
@@ -43,9 +44,11 @@ namespace nsfd
   }
 
   template <int dim>
-  void LeapfrogLoads<dim>::move_to(const double time,
+  void LeapfrogLoads<dim>::move_to(const double time, const LoadClock &clock,
                                    const CornerGroups<dim> &groups)
   {
+    // what a clock stops goes on to have the load of the step before
+    clock_ = clock;
     if (discretization_.loads().depend_on_time() && time != time_)
       set(time, groups);
   }
@@ -56,7 +59,7 @@ namespace nsfd
   {
     time_ = time;
     of_corners_.assign(mesh_.n_corners() * dim, 0.);
-    discretization_.add_loads(time, of_corners_);
+    discretization_.add_loads(time, of_corners_, clock_);
     for (const auto &[corner, force] : extra_weights_)
       for (unsigned int c = 0; c < dim; ++c)
         of_corners_[corner * dim + c] += force[c];

@@ -31,9 +31,11 @@ namespace nsfd
     }
 
     /** Groups are others now. Collective. */
-    void start(double time, const CornerGroups<dim> &groups);
-    /** Collective. */
-    void move_to(double time, const CornerGroups<dim> &groups);
+    void start(double time, const LoadClock &clock,
+               const CornerGroups<dim> &groups);
+    /** By the @p clock of the state before. Collective. */
+    void move_to(double time, const LoadClock &clock,
+                 const CornerGroups<dim> &groups);
     /** A node has split. */
     void gather(std::size_t node, const CornerGroups<dim> &groups);
 
@@ -68,5 +70,6 @@ namespace nsfd
     std::vector<double> shares_;                 ///< see HangingNodes
     std::vector<double> sum_; ///< where there are several kinds
     double time_ = 0.;
+    LoadClock clock_;
   };
 } // namespace nsfd

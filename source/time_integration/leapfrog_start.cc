@@ -80,7 +80,7 @@ namespace nsfd
     before_.front = forces_->front().finish(communicator_);
     if (large_)
       large_->start(state, *groups_);
-    loads_.start(state.time, *groups_);
+    loads_.start(state.time, state.clock, *groups_);
   }
 
   template <int dim>

@@ -134,7 +134,7 @@ namespace nsfd
     if (bonded_)
       supports_.prescribe_once(*bonded_, this->discretization_.origins(),
                                others, this->problem_);
-    if (this->free_motion_.set_loads(old.time + time.theta * h))
+    if (this->free_motion_.set_loads(old.time + time.theta * h, old.clock))
       ++this->counters_.load_assemblies;
     this->free_motion_.set_pressure(old, old.time + time.theta * h,
                                     next.pressure);

@@ -191,7 +191,8 @@ namespace nsfd
     {
       const Stopwatch watch(this->timings_.assembly);
       const Charge charge(Cost::free_motion);
-      if (this->free_motion_.set_loads(old.time + this->input_.time.theta * h))
+      if (this->free_motion_.set_loads(old.time + this->input_.time.theta * h,
+                                       old.clock))
         ++this->counters_.load_assemblies;
       this->step_problem_.begin();
       bodies_->start(old, h, this->free_motion_.loads(), next);

@@ -77,7 +77,7 @@ namespace nsfd
     for (const PrescribedRow &row : all_)
       if (const auto *place = motion_.displacement(row.point, row.component))
         groups.displacement[std::size_t(row.group) * dim + row.component] =
-            motion_.at(*place, row.point, time);
+            motion_.place_at(*place, row.point, time, clock_);
   }
 
   template <int dim>
@@ -86,10 +86,10 @@ namespace nsfd
                                          const CornerGroups<dim> &groups) const
   {
     if (const auto *velocity = motion_.velocity(row.point, row.component))
-      return motion_.at(*velocity, row.point, time + h / 2.);
+      return motion_.velocity_at(*velocity, row.point, time + h / 2., clock_);
     const std::size_t k = std::size_t(row.group) * dim + row.component;
-    return (motion_.at(*motion_.displacement(row.point, row.component),
-                       row.point, time + h) -
+    return (motion_.place_at(*motion_.displacement(row.point, row.component),
+                             row.point, time + h, clock_) -
             groups.displacement[k]) /
            h;
   }

@@ -38,6 +38,9 @@ namespace nsfd
     /** Groups behind the old ones are not among them. */
     void resize(std::size_t n_groups);
 
+    /** Of the state before the next step. */
+    void set_clock(const LoadClock &clock) { clock_ = clock; }
+
     /** Bit c of a group: component c; bit dim: it is rigid, and all are. */
     const std::vector<std::uint8_t> &mask() const { return mask_; }
 
@@ -83,6 +86,7 @@ namespace nsfd
     const Discretization<dim> &discretization_;
     const JoinedMesh<dim> &mesh_;
     const DrivenMotion<dim> motion_;
+    LoadClock clock_;
     std::vector<PrescribedRow> all_, rigid_;
     std::vector<std::uint8_t> mask_;
     std::vector<int> row_of_group_;

@@ -78,10 +78,12 @@ namespace nsfd
         continue;
       const auto &boundary = input_.boundaries[origin.block];
       const auto x = position_of(discretization_.points(), i);
+      const double its_time = old.clock.at(origin.block, time);
       for (unsigned int c = 0; c < dim; ++c)
         if (boundary.displacement[c])
-          target_[i * dim + c] = boundary.displacement[c]->at(x, time);
-        else if (boundary.velocity[c] && duration > 0.)
+          target_[i * dim + c] = boundary.displacement[c]->at(x, its_time);
+        else if (boundary.velocity[c] && duration > 0. &&
+                 !old.clock.rests(origin.block, time))
           target_[i * dim + c] +=
               duration * boundary.velocity[c]->at(x, time - duration / 2.);
     }
@@ -91,7 +93,7 @@ namespace nsfd
       bonds_->set();
     balance_.begin(old.displacement, iterate_.force, support_, problem_.n_owned,
                    largest_motion(), input_.statics->tolerance);
-    if (free_motion_.set_loads(time))
+    if (free_motion_.set_loads(time, old.clock))
       ++counters_.load_assemblies;
     free_motion_.set_pressure(old, time, pressure_);
   }

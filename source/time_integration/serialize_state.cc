@@ -41,6 +41,8 @@ namespace nsfd
     const Archive::Part part(archive, "state");
     archive.numbers("step", s.step);
     archive.numbers("time", s.time, s.last_step, s.kept_step);
+    archive.common("stopped_loads", s.clock.stopped);
+    archive.numbers("growth_step", s.growth_step);
     archive.bodies("displacement", s.displacement);
     archive.bodies("velocity", s.velocity);
     for_point_fields(

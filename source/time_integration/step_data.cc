@@ -215,11 +215,12 @@ namespace nsfd
             continue;
           double &given = problem.given_velocity[i * dim + c];
           if (const Expression *velocity = motion.velocity(j, c))
-            given = motion.at(*velocity, j, t);
+            given = motion.velocity_at(*velocity, j, t, old.clock);
           else if (const Expression *displacement = motion.displacement(j, c))
             // back to the path: what the last step missed is made up for
-            given =
-                (motion.at(*displacement, j, t) - old.jump[i * dim + c]) / h;
+            given = (motion.place_at(*displacement, j, t, old.clock) -
+                     old.jump[i * dim + c]) /
+                    h;
           problem.mask[i] |= std::uint8_t(1u << c);
         }
       }

@@ -9,6 +9,13 @@
 
 namespace nsfd
 {
+  /** From which event on the formulas of a block stay as they are then. */
+  enum class CrackEvent {
+    none,
+    first_break, ///< a point that held at the start is broken, beta = 0
+    first_face   ///< a face is, at all of its points
+  };
+
   struct BoundaryInput {
     std::string name;
     Where where;
@@ -21,5 +28,6 @@ namespace nsfd
     bool has_pressure = false;
     bool exact_motion = false; ///< of the verification case
     bool absorbs = false;      ///< waves that come in along the normal
+    CrackEvent hold_at = CrackEvent::none;
   };
 } // namespace nsfd

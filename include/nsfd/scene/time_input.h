@@ -52,6 +52,9 @@ namespace nsfd
     ContactTarget contact_target = ContactTarget::energy_safe;
     Sliding sliding = Sliding::energy_safe;
     unsigned int maximum_bisections = 10;
+    /// after which the run ends, without a point that breaks and after the
+    /// first one that has; 0: never
+    unsigned int rest_steps = 0;
     /// of a bonded point over its strength
     double largest_overshoot = std::numeric_limits<double>::infinity();
     /// of scheme = explicit: nothing is `auto`

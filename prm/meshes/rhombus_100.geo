@@ -1,0 +1,3 @@
+// gamma = 100 degrees, see rhombus.geo.
+gamma = 100;
+Include "rhombus.geo";
