@@ -18,6 +18,34 @@ namespace nsfd
       const auto &law = problem.interactions[problem.interaction[i]].law;
       return law && std::isinf(law->steepest_softening());
     }
+
+    /**
+     * Of the majorant of a point, what its law has one answer against: its
+     * impulse changes by w h^2 theta k with its velocity, k the steepest slope
+     * at which its traction falls, and where R times that is below 1 the local
+     * problem is monotone. Half of it; all where no compliance is small enough.
+     */
+    template <int dim>
+    double unique_share(const OneStepProblem<dim> &problem, const std::size_t i)
+    {
+      constexpr double part = 0.5;
+      const auto &interaction = problem.interactions[problem.interaction[i]];
+      if (problem.kind[i] != PointKind::cohesive || !interaction.law)
+        return 1.;
+      const CohesiveLaw &law = *interaction.law;
+      const double slope =
+          problem.strength_factor[i] * problem.opening_factor[i] *
+          (law.mixed() ? std::max(law.steepest_softening(),
+                                  law.mixed()->steepest_shear_softening())
+                       : law.steepest_softening());
+      const double per_velocity = problem.weight[i] * problem.time_step *
+                                  problem.time_step * problem.theta * slope;
+      const double ratio =
+          per_velocity *
+          std::max(problem.majorant_normal[i],
+                   interaction.shear_weight * problem.majorant_tangential[i]);
+      return std::isfinite(ratio) && ratio > part ? part / ratio : 1.;
+    }
   } // namespace
 
   template <int dim>
@@ -56,6 +84,9 @@ namespace nsfd
         linear_[i] = {};
       }
     points_ = problem_.acting;
+    share_.assign(n, 1.);
+    for (const std::size_t i : points_)
+      share_[i] = unique_share(problem_, i);
     for (const std::size_t i : points_) {
       linear_[i] =
           linear_point<dim>(problem_, i, majorant(i, 0), majorant(i, 1));
