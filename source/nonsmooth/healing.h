@@ -45,7 +45,7 @@ namespace nsfd
   double stored_by_law(const OneStepProblem<dim> &problem, std::size_t i,
                        double beta, double opening_max, const double *jump);
 
-  /** The slip of @p jump does not damage what has healed. */
+  /** @p jump does not damage what has healed. */
   template <int dim>
   bool is_within(const OneStepProblem<dim> &problem, std::size_t i,
                  const Healing &healing, const double *jump);
