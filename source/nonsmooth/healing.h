@@ -4,6 +4,8 @@
 
 #include "nsfd/cohesive_laws/law_point.h"
 
+#include <algorithm>
+
 namespace nsfd
 {
   /**
@@ -28,6 +30,16 @@ namespace nsfd
   {
     const auto &law = problem.interactions[problem.interaction[i]].law;
     return law && law->heals();
+  }
+
+  /** Some law does. */
+  template <int dim>
+  bool has_healing(const OneStepProblem<dim> &problem)
+  {
+    return std::any_of(problem.interactions.begin(), problem.interactions.end(),
+                       [](const Interaction &interaction) {
+                         return interaction.law && interaction.law->heals();
+                       });
   }
 
   /**
