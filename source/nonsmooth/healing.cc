@@ -32,9 +32,8 @@ namespace nsfd
   bool is_within(const OneStepProblem<dim> &problem, const std::size_t i,
                  const Healing &healing, const double *jump)
   {
-    const double slip_square = JumpSize::of<dim>(jump).slip_square;
     return healing.beta <= 0. ||
-           law_point(problem, i).reach({0., slip_square}).opening <=
+           law_point(problem, i).reach(JumpSize::of<dim>(jump)).opening <=
                healing.opening_max;
   }
 

@@ -4,6 +4,8 @@
 
 #include "nsfd/cohesive_laws/law_point.h"
 
+#include <algorithm>
+
 namespace nsfd
 {
   /**
@@ -30,6 +32,16 @@ namespace nsfd
     return law && law->heals();
   }
 
+  /** Some law does. */
+  template <int dim>
+  bool has_healing(const OneStepProblem<dim> &problem)
+  {
+    return std::any_of(problem.interactions.begin(), problem.interactions.end(),
+                       [](const Interaction &interaction) {
+                         return interaction.law && interaction.law->heals();
+                       });
+  }
+
   /**
    * Of a point that has @p beta left of the largest opening @p opening_max, at
    * the jump @p jump, pressed by @p pressure in Pa for @p time. Nothing heals
@@ -45,7 +57,7 @@ namespace nsfd
   double stored_by_law(const OneStepProblem<dim> &problem, std::size_t i,
                        double beta, double opening_max, const double *jump);
 
-  /** The slip of @p jump does not damage what has healed. */
+  /** @p jump does not damage what has healed. */
   template <int dim>
   bool is_within(const OneStepProblem<dim> &problem, std::size_t i,
                  const Healing &healing, const double *jump);

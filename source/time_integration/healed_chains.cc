@@ -15,7 +15,8 @@ namespace nsfd
     if (!chains.closed[a])
       return;
     const double h = p.time_step * p.theta;
-    std::array<double, dim> now{}, before{}; // pressed: no opening
+    std::array<double, dim> now{}, before{}; // pressed: no opening now
+    before[0] = std::max(0., p.jump_free[a * dim]);
     for (unsigned int c = 1; c < dim; ++c) {
       before[c] = p.jump_free[a * dim + c];
       now[c] = before[c] + h * chains.velocity[a * dim + c];

@@ -177,7 +177,7 @@ namespace nsfd
     }
     put(numerical, w * energies.overlap_released - residual - cohesive_work -
                        spent - w * energies.damage);
-    if (may_heal(p, a)) {
+    if (heals_ && may_heal(p, a)) {
       const HealedChains<dim> healed(chains_, a, energies);
       put(stored, -w * healed.dissipated());
       put(damage, w * healed.dissipated());
@@ -342,7 +342,7 @@ namespace nsfd
       Node &node = nodes_.of(mesh_.node_of_point(chains_.point[a]));
       for (auto &elastic : node.elastic)
         elastic.is_new = true;
-      if (!may_heal(chains_.problem, a)) {
+      if (!heals_ || !may_heal(chains_.problem, a)) {
         keep_jump(a, held);
         keep(a, energies_[k]);
       } else {

@@ -1,5 +1,7 @@
 #include "leapfrog_points.h"
 
+#include "nonsmooth/healing.h"
+
 #include "coupled_nodes.h"
 #include "point_velocities.h"
 
@@ -66,7 +68,7 @@ namespace nsfd
                                       const JoinedMesh<dim> &mesh,
                                       const OneStepProblem<dim> &all)
       : discretization_(discretization), mesh_(mesh), all_(all), chains_(all),
-        nodes_(mesh)
+        heals_(has_healing(all)), nodes_(mesh)
   {
     count_holds();
   }

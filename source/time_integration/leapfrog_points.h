@@ -164,6 +164,7 @@ namespace nsfd
     /// by face: chains of its points that are not broken
     std::vector<unsigned int> hold_of_face_;
     bool separates_ = false; ///< in accept()
+    const bool heals_;       ///< some law does
 
     ActiveNodes<dim> nodes_;
     std::vector<unsigned int> moved_;  ///< points of the step, nodes in order

@@ -69,6 +69,11 @@ namespace nsfd
   {
     for (place_ = 0; place_ < points.size(); ++place_)
       add(std::size_t(points[place_]));
+    if (!has_healing(problem_))
+      return;
+    for (place_ = 0; place_ < points.size(); ++place_)
+      if (may_heal(problem_, points[place_]))
+        heal(std::size_t(points[place_]));
   }
 
   template <int dim>
@@ -95,8 +100,6 @@ namespace nsfd
         point_energies<dim>(problem_, i, U, evaluation_.solutions[i].frozen);
     add_law(i, U_theta, energies);
     keep_history(i, energies);
-    if (may_heal(problem_, i))
-      heal(i, energies.beta);
     add_penetration(i);
   }
 
@@ -250,16 +253,16 @@ namespace nsfd
 
   /** At the end of the step, under its mean pressure. */
   template <int dim>
-  void PointBalance<dim>::heal(const std::size_t i, const double beta)
+  void PointBalance<dim>::heal(const std::size_t i)
   {
     if (!next_.contact[i] || (next_.kind[i] != PointKind::cohesive &&
                               next_.kind[i] != PointKind::free))
       return;
     const double w = problem_.weight[i], h = problem_.time_step;
     double *jump = &next_.jump[i * dim];
-    const Healing healing = healing_of<dim>(
-        problem_, i, std::min(beta, next_.beta[i]), next_.opening_max[i], jump,
-        evaluation_.solutions[i].contact_impulse / (w * h), h);
+    const Healing healing =
+        healing_of<dim>(problem_, i, next_.beta[i], next_.opening_max[i], jump,
+                        evaluation_.solutions[i].contact_impulse / (w * h), h);
     if (!healing.heals)
       return;
     put(stored, -w * healing.dissipated);

@@ -95,7 +95,7 @@ namespace nsfd
                  const PointEnergies<dim> &energies);
     double add_lift(std::size_t i);
     void keep_history(std::size_t i, const PointEnergies<dim> &energies);
-    void heal(std::size_t i, double beta);
+    void heal(std::size_t i);
     void add_penetration(std::size_t i);
 
     const Discretization<dim> &discretization_;

@@ -115,6 +115,18 @@ end
         {"hexes",
          {"dimension=3", "Mesh/type=brick", origin, corner,
           "Mesh/cells=3, 2, 2", "Discretization/degree=3", "Time/end=5 ns"}},
+        // grains that are turned, cells that flow
+        {"textured_polycrystal",
+         {"Mesh/cells=1500", "Mesh/grains=8", "Time/end=0.25 us"},
+         true},
+        {"flowing_quads",
+         {"dimension=2", "Material: bulk/model=j2 plastic",
+          "Material: bulk/yield stress=250 MPa", "Time/end=12 ns"}},
+        {"flowing_tetrahedra",
+         {"dimension=3", "Mesh/type=tetrahedra", origin, corner,
+          "Mesh/cells=4, 3, 2", "Material: bulk/model=viscoplastic",
+          "Material: bulk/yield stress=250 MPa",
+          "Material: bulk/viscosity=0.1 Pa*s", "Time/end=9 ns"}},
         // cells of two and three sizes
         {"refined_quads",
          {"dimension=2", "Mesh/cells=5, 5", "Adaptivity/levels=2",

@@ -290,6 +290,9 @@ end
         ASSERT_LT(defect(scene), 1e-9) << scene.state.time;
         ASSERT_GE(scene.state.energy.damage,
                   damage - 1e-14 * scene.state.largest_energy);
+        // what chains store is summed up: it would miss what they gain alone
+        ASSERT_GE(scene.state.energy.cohesive,
+                  -1e-13 * scene.state.largest_energy);
         damage = scene.state.energy.damage;
       }
       EXPECT_GT(damage, 0.1); // more than one separation takes
