@@ -1,3 +1,4 @@
-// gamma = 100 degrees, see rhombus.geo.
+// gamma = 100 degrees, nodes 0.01 mm apart: see rhombus.geo.
 gamma = 100;
+s = 0.01;
 Include "rhombus.geo";

@@ -14,6 +14,7 @@
 #include "core/pages_of_zeros.h"
 #include "core/stop_request.h"
 #include "core/stopwatch.h"
+#include "records/engineering.h"
 #include "state/point_fields.h"
 
 #include <fmt/format.h>
@@ -268,6 +269,11 @@ namespace nsfd
       }
       if (stopped)
         return stop(true);
+      if (parts_.events.ends_run(state_))
+        recorder_.message(fmt::format("nothing has broken for {} steps: the "
+                                      "run ends at t = {}",
+                                      input_.time.rest_steps,
+                                      engineering(state_.time, "s", 6)));
       store_->store_last();
       finish("");
       return options_.strict && !certified_ ? exit_code::not_certified

@@ -171,6 +171,56 @@ end
     }
   }
 
+  /**
+   * The same by force: 10 N/ms until one element has gone. Bending of the arm
+   * alone gives F = sqrt(2 E I G w)/a = 1.77 N for G = 140 J/m^2 on a crack of
+   * a = 0.4 mm; shear of the arm, as high as a half of a, lowers it. The held
+   * force takes the whole base, G on 1.6 mm.
+   */
+  TEST(Reference, DoubleCantileverByForce)
+  {
+    const Workspace workspace;
+    const Result result =
+        good_run(workspace, "run", {reference("double_cantilever_force")});
+    ASSERT_TRUE(result.completed());
+    EXPECT_EQ(result.counter("rejected_steps"), 0.);
+    const double force = 10. * 1e3 * result.counter("hold_time_left");
+    EXPECT_LT(force, 1.77);
+    EXPECT_GT(force, 0.85 * 1.77);
+    EXPECT_NEAR(result.history["broken_area"].back(), 1.6e-3, 1e-12);
+    EXPECT_NEAR(result.history["damage"].back(), 140. * 1.6e-3,
+                1e-9 * 140. * 1.6e-3);
+    EXPECT_LT(result.number("final_time"), 0.2e-3); // it has come to rest
+  }
+
+  // The force falls with the angle of the corner, and the crack gets farther;
+  // the loads hold in the equilibrium in which it has begun.
+  TEST(Reference, RhombusHole)
+  {
+    double force = 0., length = 0.;
+    for (const std::string angle : {"80", "110"}) {
+      const Workspace workspace;
+      const Result result = good_run(
+          workspace, "run",
+          {reference("rhombus"), {with_mesh("rhombus_" + angle + ".geo")}});
+      ASSERT_TRUE(result.completed());
+      const auto &reaction = result.history["reaction_top_y"];
+      const double strongest =
+          -*std::min_element(reaction.begin(), reaction.end());
+      const double broken = result.history["broken_area"].back();
+      EXPECT_GT(broken, length);
+      if (force > 0.) {
+        EXPECT_LT(strongest, force);
+      }
+      force = strongest;
+      length = broken;
+      const auto &time = result.history["time"];
+      EXPECT_EQ(result.counter("hold_time_top"), time[time.size() - 2]);
+      EXPECT_NEAR(reaction.back(), reaction[reaction.size() - 2],
+                  1e-9 * strongest);
+    }
+  }
+
   // The whole base lets go, and takes G on its area: 4 mm, or 2 mm^2.
   TEST(Reference, TornOffAnObstacle)
   {
