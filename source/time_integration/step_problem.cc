@@ -17,6 +17,48 @@
 
 namespace nsfd
 {
+  namespace
+  {
+    /**
+     * Impulses and what was found of them, to go back to: laws that are
+     * evaluated anew at the same impulses begin elsewhere, and where a point
+     * has several answers they may find another one.
+     */
+    template <int dim>
+    class Judged
+    {
+    public:
+      Judged(const std::vector<double> &impulse,
+             const LawEvaluation<dim> &evaluation)
+          : impulse_(impulse), velocity_(evaluation.velocity),
+            defect_(evaluation.defect), solutions_(evaluation.solutions),
+            error_(evaluation.error), worst_error_(evaluation.worst_error),
+            worst_point_(evaluation.worst_point)
+      {
+      }
+
+      void return_to(std::vector<double> &impulse,
+                     LawEvaluation<dim> &evaluation) const
+      {
+        impulse = impulse_;
+        evaluation.velocity = velocity_;
+        evaluation.defect = defect_;
+        evaluation.solutions = solutions_;
+        evaluation.error = error_;
+        evaluation.worst_error = worst_error_;
+        evaluation.worst_point = worst_point_;
+      }
+
+      double error() const { return error_; }
+
+    private:
+      std::vector<double> impulse_, velocity_, defect_;
+      std::vector<LocalSolution<dim>> solutions_;
+      double error_, worst_error_;
+      std::size_t worst_point_;
+    };
+  } // namespace
+
   template <int dim>
   StepProblem<dim>::StepProblem(const SceneInput &input,
                                 const Discretization<dim> &discretization,
@@ -118,6 +160,8 @@ namespace nsfd
     if (report.converged && problem.free_motion == FreeVelocity::known &&
         gives_by_rows(problem, control, energy_scale, impulse, evaluation))
       hold_rows(problem, control, energy_scale, impulse, evaluation, report);
+    // whatever came after the solver, a step is what its laws ask for
+    report.converged = report.converged && report.residual <= control.tolerance;
     counters_.newton += report.newton;
     counters_.krylov += report.krylov;
     counters_.sweeps += report.sweeps;
@@ -219,16 +263,13 @@ namespace nsfd
       return;
     }
     // only the solver itself knows the motion of the nodes
-    const std::vector<double> before(impulse);
-    const double error = evaluation.error;
+    const Judged<dim> before(impulse, evaluation);
     control.tolerance = std::max(1e-14, 1e-3 * control.tolerance);
     control.maximum_iterations = 10;
     report.add_work(solver.solve(problem, delassus_, energy_scale, control,
                                  impulse, evaluation));
-    if (!(evaluation.error < error)) {
-      impulse = before;
-      evaluation.update(impulse);
-    }
+    if (!(evaluation.error < before.error()))
+      before.return_to(impulse, evaluation);
     report.residual = evaluation.error;
   }
 
@@ -267,16 +308,14 @@ namespace nsfd
     const RowWork rows = present();
     const double most =
         std::max(control.row_energy, rows.round_off(energy_scale));
-    const std::vector<double> before(impulse);
-    const double error = evaluation.error;
+    const Judged<dim> before(impulse, evaluation);
     control.tolerance =
         std::max(1e-15, 0.5 * evaluation.error * most / rows.energy);
     control.maximum_iterations = 3;
     if (go_on(problem, control, energy_scale, impulse, evaluation, report) &&
         !(present().energy < rows.energy)) {
-      impulse = before;
-      evaluation.update(impulse);
-      report.residual = error;
+      before.return_to(impulse, evaluation);
+      report.residual = before.error();
     }
   }
 
@@ -309,7 +348,7 @@ namespace nsfd
     if (!std::isfinite(control.row_energy) || // statics
         !(present > harmless))
       return;
-    const std::vector<double> before(impulse);
+    const Judged<dim> before(impulse, evaluation);
     const std::size_t n = impulse.size();
     std::vector<double> D(n, -1.), wanted(n, 0.), found(n, 0.);
     for (std::size_t k = 0; k < n; ++k)
@@ -333,8 +372,7 @@ namespace nsfd
         impulse[k] = found[k];
     evaluation.update(impulse);
     if (!(held() < present / most)) { // they move something
-      impulse = before;
-      evaluation.update(impulse);
+      before.return_to(impulse, evaluation);
       return;
     }
     report.residual = evaluation.error;
@@ -356,15 +394,12 @@ namespace nsfd
                                SolverReport &report)
   {
     const auto newton = SolverRegistry<dim>::instance().create("dual newton");
-    const std::vector<double> before(impulse);
-    const double error = evaluation.error;
+    const Judged<dim> before(impulse, evaluation);
     report.add_work(newton->solve(problem, delassus_, energy_scale, control,
                                   impulse, evaluation));
-    const bool closer = evaluation.error < error;
-    if (!closer) {
-      impulse = before;
-      evaluation.update(impulse);
-    }
+    const bool closer = evaluation.error < before.error();
+    if (!closer)
+      before.return_to(impulse, evaluation);
     report.residual = evaluation.error;
     return closer;
   }
