@@ -104,10 +104,13 @@ namespace end_to_end::test_scenes
                 0)
           << header;
       const auto &names = result.history.names();
-      EXPECT_EQ((names.size() - 20) % 2, 0);
+      const bool in_space = !names.empty() && names.back().back() == 'z';
+      const std::size_t dim = in_space ? 3 : 2;
+      EXPECT_EQ((names.size() - 20) % dim, 0);
       for (std::size_t i = 20; i < names.size(); ++i) {
         EXPECT_EQ(names[i].rfind("reaction_", 0), 0) << names[i];
-        EXPECT_EQ(names[i].substr(names[i].size() - 2), i % 2 ? "_y" : "_x");
+        EXPECT_EQ(names[i].substr(names[i].size() - 2),
+                  std::string("_") + "xyz"[(i - 20) % dim]);
       }
       EXPECT_EQ(double(result.history.size()), result.number("steps") + 1.)
           << "with the start";
