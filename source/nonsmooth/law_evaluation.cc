@@ -20,17 +20,22 @@ namespace nsfd
     }
 
     /**
-     * Of the majorant of a point, what its law has one answer against: its
-     * impulse changes by w h^2 theta k with its velocity, k the steepest slope
-     * at which its traction falls, and where R times that is below 1 the local
-     * problem is monotone. Half of it; all where no compliance is small enough.
+     * Of the majorant of a point that softens, what its law has one answer
+     * against: its impulse changes by w h^2 theta k with its velocity, k the
+     * steepest slope at which its traction falls, and where R times that is
+     * below 1 the local problem is monotone. Half of it; all where no
+     * compliance is small enough, and in steps so long that round-off of the
+     * velocity would count as an impulse against it.
      */
     template <int dim>
     double unique_share(const OneStepProblem<dim> &problem, const std::size_t i)
     {
-      constexpr double part = 0.5;
+      constexpr double part = 0.5, too_long = 1e4;
       const auto &interaction = problem.interactions[problem.interaction[i]];
-      if (problem.kind[i] != PointKind::cohesive || !interaction.law)
+      const Reach history{problem.opening_max[i],
+                          problem.slip_max.empty() ? 0. : problem.slip_max[i]};
+      if (problem.kind[i] != PointKind::cohesive || !interaction.law ||
+          !past_peak(*interaction.law, problem.opening_factor[i], history))
         return 1.;
       const CohesiveLaw &law = *interaction.law;
       const double slope =
@@ -44,7 +49,7 @@ namespace nsfd
           per_velocity *
           std::max(problem.majorant_normal[i],
                    interaction.shear_weight * problem.majorant_tangential[i]);
-      return std::isfinite(ratio) && ratio > part ? part / ratio : 1.;
+      return ratio > part && ratio < too_long ? part / ratio : 1.;
     }
   } // namespace
 
