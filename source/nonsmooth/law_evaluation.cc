@@ -18,39 +18,6 @@ namespace nsfd
       const auto &law = problem.interactions[problem.interaction[i]].law;
       return law && std::isinf(law->steepest_softening());
     }
-
-    /**
-     * Of the majorant of a point that softens, what its law has one answer
-     * against: its impulse changes by w h^2 theta k with its velocity, k the
-     * steepest slope at which its traction falls, and where R times that is
-     * below 1 the local problem is monotone. Half of it; all where no
-     * compliance is small enough, and in steps so long that round-off of the
-     * velocity would count as an impulse against it.
-     */
-    template <int dim>
-    double unique_share(const OneStepProblem<dim> &problem, const std::size_t i)
-    {
-      constexpr double part = 0.5, too_long = 1e4;
-      const auto &interaction = problem.interactions[problem.interaction[i]];
-      const Reach history{problem.opening_max[i],
-                          problem.slip_max.empty() ? 0. : problem.slip_max[i]};
-      if (problem.kind[i] != PointKind::cohesive || !interaction.law ||
-          !past_peak(*interaction.law, problem.opening_factor[i], history))
-        return 1.;
-      const CohesiveLaw &law = *interaction.law;
-      const double slope =
-          problem.strength_factor[i] * problem.opening_factor[i] *
-          (law.mixed() ? std::max(law.steepest_softening(),
-                                  law.mixed()->steepest_shear_softening())
-                       : law.steepest_softening());
-      const double per_velocity = problem.weight[i] * problem.time_step *
-                                  problem.time_step * problem.theta * slope;
-      const double ratio =
-          per_velocity *
-          std::max(problem.majorant_normal[i],
-                   interaction.shear_weight * problem.majorant_tangential[i]);
-      return ratio > part && ratio < too_long ? part / ratio : 1.;
-    }
   } // namespace
 
   template <int dim>
@@ -89,9 +56,6 @@ namespace nsfd
         linear_[i] = {};
       }
     points_ = problem_.acting;
-    share_.assign(n, 1.);
-    for (const std::size_t i : points_)
-      share_[i] = unique_share(problem_, i);
     for (const std::size_t i : points_) {
       linear_[i] =
           linear_point<dim>(problem_, i, majorant(i, 0), majorant(i, 1));

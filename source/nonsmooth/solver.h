@@ -17,11 +17,8 @@ namespace nsfd
    *
    *     error = |P - P*|_R / ( |P|_R + floor ),   |x|_R^2 = sum R x^2,
    *
-   * R the majorant of the problem, and of a point that softens at most half of
-   * what it has one answer against: with more it may answer by staying as it
-   * is to what damages it in the solution. The floor is 1e-6 (or 1e-14 /
-   * tolerance) times the square root of the kinetic energy: round-off of free
-   * flight.
+   * R the majorant of the problem. The floor is 1e-6 (or 1e-14 / tolerance)
+   * times the square root of the kinetic energy: round-off of free flight.
    */
   template <int dim>
   class LawEvaluation
@@ -74,8 +71,8 @@ namespace nsfd
                                            std::size_t point) const;
     double majorant(const std::size_t point, const unsigned int c) const
     {
-      return share_[point] * (c == 0 ? problem_.majorant_normal[point]
-                                     : problem_.majorant_tangential[point]);
+      return c == 0 ? problem_.majorant_normal[point]
+                    : problem_.majorant_tangential[point];
     }
 
     double floor() const { return floor_; }
@@ -87,7 +84,6 @@ namespace nsfd
     std::vector<unsigned int> points_; ///< that acted at the last renew()
     std::vector<LinearPoint<dim>> linear_;
     std::vector<double> terms_;
-    std::vector<double> share_; ///< R over the majorant
     const std::vector<FrozenPoint> *frozen_ = nullptr;
   };
 

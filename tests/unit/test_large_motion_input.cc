@@ -276,9 +276,9 @@ namespace nsfd::large_motion_scenes::test_large_motion_input
       if (part.kind == "material model")
         names.push_back(part.name);
     EXPECT_EQ(names, (std::vector<std::string>{
-                         "linear elastic", "transversely isotropic", "rigid",
-                         "saint-venant kirchhoff", "neo-hookean", "j2 plastic",
-                         "viscoplastic"}));
+                         "linear elastic", "transversely isotropic", "cubic",
+                         "rigid", "orthotropic", "saint-venant kirchhoff",
+                         "neo-hookean", "j2 plastic", "viscoplastic"}));
   }
 
   TEST(LargeMotionInput, PartsAreNamed)
