@@ -71,8 +71,9 @@ namespace nsfd
         constexpr double long_time = 40.;
         constexpr unsigned int n_steps = 64;
         const double h = std::min(time, long_time) / n_steps;
+        // beyond 1 as at 1: a rate that ends there would end within a step
         const auto rate = [&](const double x) {
-          return x < 1. ? std::max(0., g_.first(1. - x)) : 0.;
+          return std::max(0., g_.first(1. - std::min(x, 1.)));
         };
         for (unsigned int k = 0; k < n_steps && b < 1.; ++k) {
           const double k1 = rate(b), k2 = rate(b + h / 2. * k1),
