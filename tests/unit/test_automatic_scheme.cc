@@ -84,11 +84,15 @@ subsection Time
   // What explicit steps are refused for has implicit ones, and says why.
   TEST(AutomaticScheme, WhatIsNotExplicitIsImplicit)
   {
-    const SceneInput scene = chosen(plate("  set model = j2 plastic\n"
-                                          "  set yield stress = 1 mPa\n",
-                                          "  set end = 1 s\n"));
+    const std::string law = "  set law = joined\n";
+    std::string text = plate("", "  set end = 1 s\n");
+    text.replace(text.find(law), law.size(),
+                 "  set law = rcc\n  set stiffness = 1 Pa/m\n"
+                 "  set adhesion energy = 1 J/m^2\n  set friction = 0.3\n"
+                 "  set dilatancy = 0.1\n");
+    const SceneInput scene = chosen(text);
     EXPECT_EQ(scene.time.scheme_name, "moreau-jean");
-    EXPECT_NE(scene.scheme_choice.find("j2 plastic"), std::string::npos)
+    EXPECT_NE(scene.scheme_choice.find("dilatancy"), std::string::npos)
         << scene.scheme_choice;
   }
 
