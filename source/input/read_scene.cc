@@ -295,11 +295,20 @@ namespace nsfd
     }
 
     void override_entries(ParameterFile &file,
-                          const std::vector<std::string> &assignments,
+                          const std::vector<Assignment> &assignments,
                           InputErrors &errors)
     {
-      for (const std::string &assignment : assignments)
-        file.override_entry(assignment, all_kinds(), errors);
+      for (const Assignment &one : assignments)
+        file.override_entry(one.text, all_kinds(), errors, one.file);
+    }
+
+    std::vector<Assignment>
+    on_command_line(const std::vector<std::string> &overrides)
+    {
+      std::vector<Assignment> all;
+      for (const std::string &text : overrides)
+        all.push_back({text});
+      return all;
     }
   } // namespace
 
@@ -307,12 +316,20 @@ namespace nsfd
   read_scene(const std::string &file, const std::vector<std::string> &overrides,
              InputErrors &errors)
   {
+    return read_case_scene(file, on_command_line(overrides), errors);
+  }
+
+  std::unique_ptr<SceneInput>
+  read_case_scene(const std::string &file,
+                  const std::vector<Assignment> &assignments,
+                  InputErrors &errors)
+  {
     return read(
         [&](ParameterFile &parsed, InputErrors &found) {
           // what cannot be read would look like a file in which all is missing
           if (!parsed.read_file(file, found))
             return false;
-          override_entries(parsed, overrides, found);
+          override_entries(parsed, assignments, found);
           return true;
         },
         file, errors);
@@ -326,7 +343,7 @@ namespace nsfd
     return read(
         [&](ParameterFile &parsed, InputErrors &found) {
           parsed.read_text(text, name, found);
-          override_entries(parsed, overrides, found);
+          override_entries(parsed, on_command_line(overrides), found);
           return true;
         },
         name, errors);

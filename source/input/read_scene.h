@@ -20,6 +20,18 @@ namespace nsfd
   read_scene(const std::string &file, const std::vector<std::string> &overrides,
              InputErrors &errors);
 
+  /** `Section/name=value`, and the file that gives the value: paths in it start
+      there, without one where the program runs. */
+  struct Assignment {
+    std::string text, file = {};
+  };
+
+  /** As read_scene(), for a case of a study. */
+  std::unique_ptr<SceneInput>
+  read_case_scene(const std::string &file,
+                  const std::vector<Assignment> &assignments,
+                  InputErrors &errors);
+
   /** As read_scene(), for text that messages call @p name. */
   std::unique_ptr<SceneInput>
   read_scene_text(const std::string &text, const std::string &name,

@@ -84,8 +84,10 @@ namespace nsfd
         return false;
       }
       if (!std::ifstream(file)) {
-        reader.error("file", fmt::format("there is no file `{}`", file),
-                     "paths are relative to the folder of the parameter file");
+        reader.error(
+            "file", fmt::format("there is no file `{}`", file),
+            "paths are relative to the folder of the parameter file, those of "
+            "--set and --vary to where the program runs");
         return false;
       }
       return true;

@@ -365,11 +365,13 @@ namespace nsfd
   void
   ParameterFile::override_entry(const std::string &assignment,
                                 const std::vector<std::string> &known_kinds,
-                                InputErrors &errors)
+                                InputErrors &errors, const std::string &file)
   {
-    const SourceText source(
-        assignment, {command_line, 0, 0,
-                     static_cast<unsigned int>(assignment.size()), assignment});
+    const auto text_in = [&assignment](const std::string &place) {
+      return SourceText(assignment,
+                        {place, 0, 0, unsigned(assignment.size()), assignment});
+    };
+    const SourceText source = text_in(command_line);
     if (assignment.size() > text_limits::line)
       return errors.error({command_line, 0, 0, 0, ""},
                           fmt::format("`{}...` has {} bytes, more than {}",
@@ -418,11 +420,12 @@ namespace nsfd
     }
 
     const SourceText name = source.part(begin, equals - begin);
-    ParameterEntry entry =
-        in_todays_words(section->kind(),
-                        {collapse_blanks(name.text()), source.part(equals + 1),
-                         name.location()},
-                        errors);
+    ParameterEntry entry = in_todays_words(
+        section->kind(),
+        {collapse_blanks(name.text()),
+         text_in(file.empty() ? command_line : file).part(equals + 1),
+         name.location()},
+        errors);
     if (!overridden_.insert(section_name + "/" + entry.name).second)
       return errors.error(
           name.location(),

@@ -164,11 +164,12 @@ namespace nsfd
     /**
      * `Section/name=value` of the option --set, `name=value` at the top.
      * Replaces the value of the file, or adds to it; sections whose kind is
-     * not in @p known_kinds cannot be created.
+     * not in @p known_kinds cannot be created. Paths of files in the value
+     * start at the folder of @p file, if that is where the value stands.
      */
     void override_entry(const std::string &assignment,
                         const std::vector<std::string> &known_kinds,
-                        InputErrors &errors);
+                        InputErrors &errors, const std::string &file = "");
 
     /** Entries outside all sections. */
     ParameterSection &top() { return *sections_.front(); }

@@ -60,36 +60,36 @@ namespace nsfd
     }
 
     /** Assignments for the scene of a case; @p more replace others. */
-    std::vector<std::string> assignments(const StudyInput &study,
-                                         const Combination &combination,
-                                         const std::string &name,
-                                         const std::vector<std::string> &set,
-                                         const std::vector<std::string> &more)
+    std::vector<Assignment> assignments(const StudyInput &study,
+                                        const Combination &combination,
+                                        const std::string &name,
+                                        const std::vector<std::string> &set,
+                                        const std::vector<std::string> &more)
     {
-      std::vector<std::string> all;
+      std::vector<Assignment> all;
       for (const std::string &assignment : set)
         if (is_for_scenes(path_of(assignment)))
-          all.push_back(assignment);
+          all.push_back({assignment});
       for (const auto &[path, value] : combination.parameters)
         if (is_for_scenes(path))
-          all.push_back(path + "=" + value);
+          all.push_back({path + "=" + value, combination.file_of(path)});
       const auto find = [&all](const std::string &path) {
         return std::find_if(all.begin(), all.end(),
-                            [&path](const std::string &assignment) {
-                              return path_of(assignment) == path;
+                            [&path](const Assignment &assignment) {
+                              return path_of(assignment.text) == path;
                             });
       };
       for (const std::string &assignment : more) {
         const auto found = find(path_of(assignment));
         if (found != all.end())
           all.erase(found);
-        all.push_back(assignment);
+        all.push_back({assignment});
       }
       if (!study.outputs)
         for (const char *output : {"Output/fields", "Output/report"})
           if (find(output) == all.end())
-            all.push_back(std::string(output) + "=false");
-      all.push_back("Output/directory=" + study.directory + "/" + name);
+            all.push_back({std::string(output) + "=false"});
+      all.push_back({"Output/directory=" + study.directory + "/" + name});
       return all;
     }
 
@@ -136,7 +136,7 @@ namespace nsfd
       one.combination = combination;
       one.combination.name = name;
       one.ranks = ranks_of(study, combination, errors);
-      const auto scene = read_scene(
+      const auto scene = read_case_scene(
           study.file, assignments(study, combination, name, set, more), errors);
       if (!scene)
         return one;

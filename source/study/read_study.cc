@@ -37,7 +37,8 @@ namespace nsfd
           errors.error(entry.value.location(), problem);
           good = false;
         } else
-          variation.parameters.push_back({entry.name, std::move(values)});
+          variation.parameters.push_back(
+              {entry.name, std::move(values), entry.value.location().source});
       }
       if (!good)
         return;

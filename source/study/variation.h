@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@ namespace nsfd
     struct Parameter {
       std::string path;                ///< "Mesh/cells"
       std::vector<std::string> values; ///< as a parameter file would write them
+      std::string file = {}; ///< that gives them; empty: the command line
     };
     std::string
         name; ///< of its block, or the short name of its first parameter
@@ -63,7 +65,15 @@ namespace nsfd
     std::string name;               ///< of its folder: letters, digits, =_-+.
     std::vector<std::size_t> index; ///< value of each variation
     std::vector<std::pair<std::string, std::string>>
-        parameters; ///< path, value
+        parameters;                           ///< path, value
+    std::map<std::string, std::string> files; ///< that give values, by path
+
+    /** The file that gives the value of @p path; empty: the command line. */
+    std::string file_of(const std::string &path) const
+    {
+      const auto found = files.find(path);
+      return found == files.end() ? "" : found->second;
+    }
   };
 
   /** The first variation changes slowest. Names are unique. */
