@@ -1,4 +1,5 @@
-#include "nsfd/cohesive_laws/cohesive_law.h"
+#include "extrinsic_law.h"
+
 #include "nsfd/cohesive_laws/law_input.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace nsfd
    * a^2 u_T): opening to d_m and closing again dissipates R_max d_m / 2, though
    * beta is still 1. The traction jumps at d_c, the area under it does not.
    */
-  class Dugdale final : public CohesiveLaw
+  class Dugdale final : public ExtrinsicLaw
   {
   public:
     explicit Dugdale(SectionReader &reader)
@@ -28,22 +29,9 @@ namespace nsfd
       shear_weight_ = laws::read_shear_weight(reader);
     }
 
-    bool extrinsic() const override { return true; }
-    double normal_stiffness() const override
-    {
-      return std::numeric_limits<double>::infinity();
-    }
-    double stiffness_ratio() const override { return shear_weight_; }
-    double shear_weight() const override { return shear_weight_; }
-
     double beta(const double d) const override
     {
       return d < critical_opening_ ? 1. : 0.;
-    }
-
-    double traction(const double d) const override
-    {
-      return strength_ * beta(d);
     }
 
     double energy(const double d) const override
@@ -57,19 +45,12 @@ namespace nsfd
                           std::min(d0, critical_opening_));
     }
 
-    double elastic_limit() const override { return 0.; }
-    double peak_opening() const override { return 0.; }
-    double final_opening() const override { return critical_opening_; }
-    double strength() const override { return strength_; }
     double toughness() const override { return strength_ * critical_opening_; }
 
     double steepest_softening() const override
     {
       return std::numeric_limits<double>::infinity();
     }
-
-  private:
-    double strength_, critical_opening_, shear_weight_;
   };
 
   NSFD_REGISTER(CohesiveLawRegistry, Dugdale, "dugdale",

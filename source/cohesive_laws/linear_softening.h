@@ -1,9 +1,8 @@
 #pragma once
 
-#include "nsfd/cohesive_laws/cohesive_law.h"
+#include "extrinsic_law.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace nsfd
 {
@@ -12,27 +11,12 @@ namespace nsfd
    * d in m: G = R_max d_c / 2. What d is, how it unloads, and its constants are
    * those of the law.
    */
-  class LinearSoftening : public CohesiveLaw
+  class LinearSoftening : public ExtrinsicLaw
   {
   public:
-    bool extrinsic() const override { return true; }
-
-    double normal_stiffness() const override
-    {
-      return std::numeric_limits<double>::infinity();
-    }
-
-    double stiffness_ratio() const override { return shear_weight_; }
-    double shear_weight() const override { return shear_weight_; }
-
     double beta(const double d) const override
     {
       return d < critical_opening_ ? 1. - d / critical_opening_ : 0.;
-    }
-
-    double traction(const double d) const override
-    {
-      return strength_ * beta(d);
     }
 
     double energy(const double d) const override
@@ -52,11 +36,6 @@ namespace nsfd
              (2. * critical_opening_);
     }
 
-    double elastic_limit() const override { return 0.; }
-    double peak_opening() const override { return 0.; }
-    double final_opening() const override { return critical_opening_; }
-    double strength() const override { return strength_; }
-
     double toughness() const override
     {
       return 0.5 * strength_ * critical_opening_;
@@ -66,8 +45,5 @@ namespace nsfd
     {
       return strength_ / critical_opening_;
     }
-
-  protected:
-    double strength_ = 0., critical_opening_ = 0., shear_weight_ = 0.;
   };
 } // namespace nsfd

@@ -1,4 +1,5 @@
-#include "nsfd/cohesive_laws/cohesive_law.h"
+#include "extrinsic_law.h"
+
 #include "nsfd/cohesive_laws/law_input.h"
 
 #include <cmath>
@@ -17,7 +18,7 @@ namespace nsfd
    * towards d_c, above 2 it falls fastest at first. Unloading is on the secant
    * to the origin, R = T(d_m) / d_m (<u_N>_+ n + a^2 u_T).
    */
-  class PprExtrinsic final : public CohesiveLaw
+  class PprExtrinsic final : public ExtrinsicLaw
   {
   public:
     explicit PprExtrinsic(SectionReader &reader)
@@ -26,22 +27,9 @@ namespace nsfd
       shear_weight_ = laws::read_shear_weight(reader);
     }
 
-    bool extrinsic() const override { return true; }
-    double normal_stiffness() const override
-    {
-      return std::numeric_limits<double>::infinity();
-    }
-    double stiffness_ratio() const override { return shear_weight_; }
-    double shear_weight() const override { return shear_weight_; }
-
     double beta(const double d) const override
     {
       return std::pow(rest(d), alpha_ - 1.);
-    }
-
-    double traction(const double d) const override
-    {
-      return strength_ * beta(d);
     }
 
     double energy(const double d) const override
@@ -64,11 +52,6 @@ namespace nsfd
              std::expm1(alpha_ * std::log1p(change));
     }
 
-    double elastic_limit() const override { return 0.; }
-    double peak_opening() const override { return 0.; }
-    double final_opening() const override { return critical_opening_; }
-    double strength() const override { return strength_; }
-
     double toughness() const override
     {
       return strength_ * critical_opening_ / alpha_;
@@ -83,7 +66,7 @@ namespace nsfd
     }
 
   private:
-    double strength_, critical_opening_, alpha_, shear_weight_;
+    double alpha_;
 
     /** 1 - d / d_c. */
     double rest(const double d) const

@@ -76,4 +76,17 @@ namespace nsfd::finite
         y[c] += A[c * dim + d] * x[d];
     return y;
   }
+
+  /** f_i -= weight P g_i: what the stress @p P gives to @p n nodes, with the
+      gradients @p g of their shape functions. */
+  template <int dim>
+  void subtract_forces(const Matrix<dim> &P, const double weight,
+                       const double *g, const unsigned int n, double *f)
+  {
+    for (unsigned int i = 0; i < n; ++i) {
+      const auto of_node = multiply<dim>(P, g + i * dim);
+      for (unsigned int c = 0; c < dim; ++c)
+        f[i * dim + c] -= weight * of_node[c];
+    }
+  }
 } // namespace nsfd::finite

@@ -90,19 +90,12 @@ namespace nsfd
       const Matrix C = finite::cofactors<dim>(F);
       for (unsigned int k = 0; k < dim * dim; ++k)
         P[k] -= p / J * C[k];
-      for (unsigned int i = 0; i < n; ++i) {
-        const auto of_node = finite::multiply<dim>(P, gradients(q) + i * dim);
-        for (unsigned int c = 0; c < dim; ++c)
-          f[i * dim + c] -= JxW * of_node[c];
-      }
+      finite::subtract_forces<dim>(P, JxW, gradients(q), n, f);
     }
     for (unsigned int q = 0; q < n_q; ++q) {
       const Matrix C = finite::cofactors<dim>(deformation(cell, gradients(q)));
-      for (unsigned int i = 0; i < n; ++i) {
-        const auto of_node = finite::multiply<dim>(C, gradients(q) + i * dim);
-        for (unsigned int c = 0; c < dim; ++c)
-          f[i * dim + c] -= here.JxW[q] * (mean / now) * of_node[c];
-      }
+      finite::subtract_forces<dim>(C, here.JxW[q] * (mean / now), gradients(q),
+                                   n, f);
     }
     return {volume, now};
   }

@@ -152,11 +152,7 @@ namespace nsfd
       stored_[cell] += JxW * material(cell).energy(C);
       const Matrix P = finite::first_piola<dim>(F, S);
       peaks_[cell] = std::max(peaks_[cell], finite::square<dim>(P));
-      for (unsigned int i = 0; i < n; ++i) {
-        const auto of_node = finite::multiply<dim>(P, g + i * dim);
-        for (unsigned int c = 0; c < dim; ++c)
-          f[i * dim + c] -= JxW * of_node[c];
-      }
+      finite::subtract_forces<dim>(P, JxW, g, n, f);
     }
     return {volume, now};
   }
@@ -170,8 +166,7 @@ namespace nsfd
     const unsigned int n = here.n_nodes, n_q = unsigned(here.JxW.size());
     const std::size_t n_cells = stored_.size();
     double volume = 0., now = 0.;
-    if (!taken_.empty())
-      taken_[cell] = taken_[n_cells + cell] = 0.;
+    taken_[cell] = taken_[n_cells + cell] = 0.;
     for (unsigned int q = 0; q < n_q; ++q) {
       const double *g = &here.gradients[std::size_t(q) * n * dim],
                    JxW = here.JxW[q];
@@ -191,11 +186,7 @@ namespace nsfd
       taken_[cell] += JxW * at.plastic;
       taken_[n_cells + cell] += JxW * at.viscous;
       peaks_[cell] = std::max(peaks_[cell], finite::square<dim>(at.sigma));
-      for (unsigned int i = 0; i < n; ++i) {
-        const auto of_node = finite::multiply<dim>(at.sigma, g + i * dim);
-        for (unsigned int c = 0; c < dim; ++c)
-          f[i * dim + c] -= JxW * of_node[c];
-      }
+      finite::subtract_forces<dim>(at.sigma, JxW, g, n, f);
     }
     return {volume, now};
   }
@@ -227,11 +218,7 @@ namespace nsfd
       const double *g = &here.gradients[std::size_t(q) * n * dim];
       const Matrix C = finite::cofactors<dim>(small_ ? finite::unit<dim>()
                                                      : deformation(cell, g));
-      for (unsigned int i = 0; i < n; ++i) {
-        const auto of_node = finite::multiply<dim>(C, g + i * dim);
-        for (unsigned int c = 0; c < dim; ++c)
-          more[i * dim + c] -= here.JxW[q] * tension * of_node[c];
-      }
+      finite::subtract_forces<dim>(C, here.JxW[q] * tension, g, n, more);
     }
     for (unsigned int k = 0; k < n * dim; ++k)
       f[k] += more[k];

@@ -1,4 +1,4 @@
-#include "make_scene.h"
+#include "leapfrog_steps.h"
 #include "material_point/drive_point.h"
 #include "nonsmooth/healing.h"
 
@@ -226,7 +226,6 @@ end
   // by h / 30 in each step in which the seam is pressed, and in no other.
   TEST(Healing, BarsInImplicitAndExplicitSteps)
   {
-    GTEST_SKIP() << "ends by a signal within the whole test program";
     const std::string pull =
         "if(t < 20, 0.3, if(t < 40, 0.1, 0.3)) * sin(pi * t / 20)";
     using Overrides = std::vector<std::string>;
@@ -235,7 +234,7 @@ end
            {Overrides{"Time/scheme=moreau-jean", "Time/step=0.02"},
             Overrides{"Time/scheme=explicit"}}) {
         SCOPED_TRACE(law + " " + scheme.front());
-        Scene<2> scene(text(law, pull), scheme);
+        Steps<2> scene(text(law, pull), scheme);
         const auto &points = scene.discretization->points();
         std::size_t seam = 0;
         while (seam < points.n_points &&
@@ -243,18 +242,20 @@ end
           ++seam;
         ASSERT_LT(seam, points.n_points);
         double damage = 0., healed = 0., grown = 0., torn_to = 1.;
-        double before[2] = {1., 1.}; // b of the last two steps
+        // b of the last two steps: two chains of explicit steps take turns
+        double before[2] = {1., 1.};
         while (scene.state.time < 38.) {
           const double h = scene.time_step;
-          scene.advance();
+          scene.step();
+          scene.show();
           const State &state = scene.state;
           ASSERT_LT(defect(scene), 1e-9) << state.time;
           ASSERT_GE(state.energy.damage, damage - 1e-14 * state.largest_energy);
           damage = state.energy.damage;
           const double b = std::sqrt(state.beta[seam]);
-          if (state.contact[seam] && b > before[1])
+          if (state.contact[seam] && b > before[0])
             healed += h;
-          grown += std::max(0., b - before[1]);
+          grown += std::max(0., b - before[0]) / 2.; // of the mean of both
           before[0] = before[1];
           before[1] = b;
           if (state.time < 20.)
@@ -262,15 +263,18 @@ end
         }
         EXPECT_LT(torn_to, 0.1);
         EXPECT_GT(healed, 5.);
-        EXPECT_NEAR(grown, healed / 30., 1e-3 * grown);
+        // the contact of a step may be that of its begin or of its end
+        const double one_step = 1.01 * scene.time_step / 30.;
+        EXPECT_NEAR(grown, healed / 30., one_step);
         const double recovered = before[1];
-        EXPECT_NEAR(recovered, torn_to + healed / 30., 1e-3);
+        EXPECT_NEAR(recovered, torn_to + healed / 30., one_step);
         // torn again, it takes what the surface takes
         const double spent = scene.state.energy.damage;
         while (scene.state.time < 55.) {
-          scene.advance();
+          scene.step();
           ASSERT_LT(defect(scene), 1e-9) << scene.state.time;
         }
+        scene.show();
         EXPECT_LT(std::sqrt(scene.state.beta[seam]), 0.2 * recovered);
         EXPECT_GT(scene.state.energy.damage, spent);
       }
@@ -279,18 +283,17 @@ end
   // Pressed and sheared at once: bonds form and break while the seam slides.
   TEST(Healing, SlidingSeamsCloseTheBalance)
   {
-    GTEST_SKIP() << "ends by a signal within the whole test program";
     using Overrides = std::vector<std::string>;
     for (const Overrides &scheme :
          {Overrides{"Time/scheme=moreau-jean", "Time/step=0.05"},
           Overrides{"Time/scheme=explicit"}}) {
       SCOPED_TRACE(scheme.front());
-      Scene<2> scene(
-          text("rcc", "-0.05 * min(1, t / 5)", "0.4 * sin(pi * t / 20)"),
+      Steps<2> scene(
+          text("rcc", "-0.05 * min(1, t / 5)", "0.8 * sin(pi * t / 20)"),
           scheme);
       double damage = 0.;
       while (scene.state.time < 40.) {
-        scene.advance();
+        scene.step();
         ASSERT_LT(defect(scene), 1e-9) << scene.state.time;
         ASSERT_GE(scene.state.energy.damage,
                   damage - 1e-14 * scene.state.largest_energy);
