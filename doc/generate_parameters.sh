@@ -605,7 +605,9 @@ END
       print generators
       generators = ""
     }
-    { print }'
+    # what the same solver is said to be above
+    kind ~ /^solver/ && $0 in told { sub(/   .*/, "") }
+    { told[$0] = 1; print }'
   printf '```\n'
 } | once >"$scratch/parameters.md"
 mv "$scratch/parameters.md" doc/parameters.md
