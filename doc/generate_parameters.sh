@@ -595,7 +595,18 @@ END
   # what the examples of laws say is above
   ./nsfd --list | awk '
     /^[^ ]/ { kind = $0 }
-    kind == "cohesive law" && /for example:/ { next }
+    kind ~ /^(cohesive law|verification case)$/ && /for example:/ { next }
+    # names only, lines of them
+    kind == "verification case" && /^  / {
+      sub(/^  /, "")
+      sub(/   .*/, "")
+      cases = cases (cases == "" ? "  " : ", ") $0
+      next
+    }
+    cases != "" {
+      print cases
+      cases = ""
+    }
     sub(/ +generator of deal\.II.*/, "") {
       generators = generators (generators == "" ? "" : ",") $0
       next
