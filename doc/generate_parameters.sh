@@ -88,14 +88,6 @@ subsection Obstacle: floor
   set point  = 0, 0
   set normal = 0, 1
 end
-subsection Obstacle: glued
-  set where            = top
-  set point            = 0, 1
-  set normal           = 0, -1
-  set law              = collins-craft
-  set strength         = 1
-  set critical opening = 1
-end
 subsection Time
   set end  = 1
   set step = 1 s
@@ -299,10 +291,6 @@ subsection Time
 end
 END
 
-# Explicit steps on joined cells.
-sed -e '/quasi-static/d; s/set step .*/set step = auto\n  set scheme = explicit/' \
-  "$scratch/static.prm" >"$scratch/leapfrog.prm"
-
 # Section Path of `nsfd law`, with options.
 path_of() {
   law_section Path "$@"
@@ -331,44 +319,55 @@ sections() {
   printf '```\n'
 }
 
-# Entries of an Interface block of scene $1: with "common" those that every
-# cohesive law has, else one block per law with its own only.
-interfaces() {
-  ./nsfd "$1" --print-parameters >"$scratch/all"
-  printf '```\n'
-  awk -v part="$2" '
-    function name(line) {
+# An entry that several blocks of a kind have is printed in the first of them
+# only; within a block x, y, z and so on share one text. What selects a part is
+# printed always, and so are the entries of a law that not all laws have. In the
+# whole scene every entry stays, and repeated texts go.
+once() {
+  awk '
+    function entry(line) {
       sub(/^ *(# )?set /, "", line)
       sub(/ *=.*/, "", line)
       return line
     }
-    # an extrinsic law has all of them, behind its own
-    FNR == NR {
-      if ($0 == "subsection Interface: camacho-ortiz") inside = 1
-      if (inside && (name($0) == "where" || name($0) == "strength factor"))
-        shared = name($0)
-      if (inside && shared == "strength factor" || name($0) == "where")
-        common[name($0)] = 1
-      if (inside && /^end/) inside = 0
-      next
+    # the entry without its direction, and its text
+    function key(line,    name, text) {
+      name = entry(line)
+      sub(/ [xyz]+$/, "", name)
+      text = line
+      if (!sub(/^.*[^ ].* # /, "", text)) text = ""
+      return kind "/" name "/" text
     }
-    /^subsection Interface: / { block = $3; if (part != "common" && n++) print "" }
-    /^subsection/ && !/^subsection Interface: / { block = "" }
-    block == "" { next }
-    part == "common" && block == "camacho-ortiz" {
-      if (/^subsection/) print "subsection Interface: ..."
-      else if (/^end/ || name($0) in common || name($0) == "law") {
-        sub(/ = camacho-ortiz/, " = ...          ")
-        sub(/ = x < 4/, " = all  ")
-        print
+    function is_dropped(line,    name) {
+      name = entry(line)
+      if (whole || name ~ /^(model|type|law|shape|scheme|mode)$/) return 0
+      if (kind == "Interface") return name in common
+      return first[key(line)] != block
+    }
+    /^## / { whole = /A whole scene/ }
+    /^subsection / {
+      kind = $2
+      sub(/:$/, "", kind)
+      if (kind == "Body") kind = "Mesh"
+      ++block
+      is_common = $0 ~ /Interface: notch/
+      # a block from which all is dropped is none
+      if (!whole) { opening = $0; next }
+    }
+    /^  (# )?set / && kind != "Vary" {
+      if (entry($0) == "strength factor") is_common = 1
+      if (whole && kind == "Interface" && is_common) common[entry($0)] = 1
+      its = key($0)
+      if (its in first) {
+        if (is_dropped($0)) next
+        sub(/ +# [^#]*$/, "")
       }
+      else first[its] = block
     }
-    part != "common" && (/^subsection/ || /^end/ || !(name($0) in common)) {
-      if (name($0) == "law") sub(/ *#.*/, "")
-      print
-    }
-    /^end/ { block = "" }' "$scratch/all" "$scratch/all"
-  printf '```\n'
+    opening != "" && /^end/ { opening = ""; is_empty = 1; next }
+    opening != "" { print opening; opening = "" }
+    is_empty && /^$/ { is_empty = 0; next }
+    { is_empty = 0; print }'
 }
 
 {
@@ -383,7 +382,8 @@ prints; do not edit it. For your own scene,
 prints the same: every entry that the parts of *this* scene have, with its
 value and its text. An entry that no part of the scene reads is an error, so a
 page of all entries does not exist; below are a whole scene and then the blocks
-that it does not use.
+that it does not use. An entry that several blocks of a kind have is in the first
+of them only.
 
 ## How values are written
 
@@ -427,24 +427,22 @@ END
   cat <<'END'
 ```
 
-## Interfaces: entries that every law has
+## Interfaces: entries of each law
 
-`unloading` belongs to extrinsic laws. Of these entries `elastic` has `where`
-and those from `friction` to `crack pressure`; `contact` has `where`, `friction`,
-`restitution`, `dilatancy`, `wear coefficient` and `crack pressure`; `rigid` and
+What cohesive laws have in common is in `Interface: all` above; `unloading` belongs to
+extrinsic ones. Of these entries `elastic` has `where`, the initial stress and those from
+`friction` to `crack pressure`; `contact` has them as `Interface: notch` does; `rigid` and
 `bonded` have `where` alone.
 
 END
-  interfaces "$scratch/parts.prm" common
-  cat <<'END'
-
-## Interfaces: entries of each law
-
-END
-  interfaces "$scratch/parts.prm" own
+  sections "$scratch/parts.prm" 'Interface: .*'
   cat <<'END'
 
 ## Obstacles, rigid and anisotropic materials
+
+Rigid materials have no viscosity and no initial stress. An obstacle with a cohesive
+`law` has the entries of an Interface block of this law from `strength` to `broken`, but
+for `opening viscosity` and `unloading`.
 
 END
   sections "$scratch/parts.prm" '(Obstacle|Material): .*'
@@ -472,9 +470,6 @@ END
 
 END
   sections "$scratch/static.prm" 'Time'
-  printf '\n## Time, with explicit steps on joined cells\n\n'
-  sections "$scratch/leapfrog.prm" 'Discretization|Time'
-
   cat <<'END'
 
 ## Observables
@@ -488,7 +483,7 @@ END
 ## Several bodies, three dimensions
 
 END
-  sections "$scratch/bodies.prm" '(Mesh|Body: .*|Material: .*|Loads)'
+  sections "$scratch/bodies.prm" '(Mesh|Body: lower)'
   cat <<'END'
 
 ## A mesh of deal.II's generators
@@ -597,8 +592,34 @@ END
 
 ```
 END
-  ./nsfd --list
+  # what the examples of laws say is above
+  ./nsfd --list | awk '
+    /^[^ ]/ { kind = $0 }
+    kind ~ /^(cohesive law|verification case)$/ && /for example:/ { next }
+    # names only, lines of them
+    kind == "verification case" && /^  / {
+      sub(/^  /, "")
+      sub(/   .*/, "")
+      cases = cases (cases == "" ? "  " : ", ") $0
+      next
+    }
+    cases != "" {
+      print cases
+      cases = ""
+    }
+    sub(/ +generator of deal\.II.*/, "") {
+      generators = generators (generators == "" ? "" : ",") $0
+      next
+    }
+    generators != "" {
+      print "  of the generators of deal.II:"
+      print generators
+      generators = ""
+    }
+    # what the same solver is said to be above
+    kind ~ /^solver/ && $0 in told { sub(/   .*/, "") }
+    { told[$0] = 1; print }'
   printf '```\n'
-} >"$scratch/parameters.md"
+} | once >"$scratch/parameters.md"
 mv "$scratch/parameters.md" doc/parameters.md
 echo "doc/parameters.md: $(wc -l <doc/parameters.md) lines"

@@ -48,10 +48,13 @@ namespace nsfd
                     const GrainTable &grains, MaterialInput &material)
     {
       const std::vector<std::string> names = material_model_names();
+      // Hooke's law in the form that motions of any size allow
+      const std::string usual = !scene.large_motion  ? names.front()
+                                : scene.plane_stress ? "saint-venant kirchhoff"
+                                                     : "neo-hookean";
       const unsigned int n_before = reader.errors().n_errors();
-      material.model_name =
-          reader.choice("model", names.front(), names,
-                        fmt::format("{}", fmt::join(names, ", ")));
+      material.model_name = reader.choice(
+          "model", usual, names, fmt::format("{}", fmt::join(names, ", ")));
       if (reader.errors().n_errors() > n_before) {
         reader.accept_everything();
         return false;

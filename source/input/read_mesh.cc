@@ -18,8 +18,12 @@ namespace nsfd
     std::string read_type(SectionReader &reader, const unsigned int dimension,
                           const bool is_body)
     {
+      // who names a file means its mesh
+      const char *const usual = !is_body && reader.has("file") ? "file"
+                                : dimension == 2               ? "rectangle"
+                                                               : "brick";
       const auto value = reader.raw(
-          "type", dimension == 2 ? "rectangle" : "brick",
+          "type", usual,
           "rectangle, brick, notched plate, crossed triangles, diagonal "
           "triangles, tetrahedra, bodies, file, voronoi, isotropic, or a "
           "generator of deal.II");

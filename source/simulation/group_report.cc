@@ -73,6 +73,13 @@ namespace nsfd
       return blocks;
     }
 
+    /** A surface of a geometry of which the mesh has no element says nothing.
+     */
+    bool is_empty(const NamedMesh::Group &group)
+    {
+      return group.name.empty() && group.n_elements == 0;
+    }
+
     std::string describe(const NamedMesh &mesh, const NamedMesh::Group &group)
     {
       static const char *const nouns[] = {"point", "curve", "surface",
@@ -119,7 +126,7 @@ namespace nsfd
       if (!blocks.empty())
         lines.push_back(
             {"group", describe(mesh, group) + ", used by " + blocks});
-      else if (++n_unused <= n_shown)
+      else if (!is_empty(group) && ++n_unused <= n_shown)
         lines.push_back({"group", describe(mesh, group) + ", not used"});
     }
     if (n_unused > n_shown)
@@ -137,9 +144,11 @@ namespace nsfd
     const NamedMesh &mesh = *input.mesh.named;
     const std::vector<Use> uses = all_uses(input);
     std::vector<std::string> used, unused;
-    for (const NamedMesh::Group &group : mesh.groups)
-      (blocks_that_name(mesh, group, uses).empty() ? unused : used)
-          .push_back(group.label());
+    for (const NamedMesh::Group &group : mesh.groups) {
+      const bool is_used = !blocks_that_name(mesh, group, uses).empty();
+      if (is_used || !is_empty(group))
+        (is_used ? used : unused).push_back(group.label());
+    }
     const auto list = [](std::vector<std::string> words) {
       constexpr std::size_t n_shown = 6;
       const std::size_t n = words.size();

@@ -395,8 +395,10 @@ namespace nsfd
     contacts_.clear();
     chosen_.clear();
 
-    // cells around a node meet the same facet at one place
-    std::map<std::vector<unsigned int>, std::size_t> known;
+    // cells around a node meet the same facet at one place; where corners meet,
+    // the facets around a vertex have one end and several normals
+    constexpr double same_normal = 0.999;
+    std::map<std::vector<unsigned int>, std::vector<std::size_t>> known;
     for (const auto &row : surfaces_.rows(state_, h, std::sqrt(speed))) {
       Contact contact;
       if (!make(row, groups, contact))
@@ -404,8 +406,14 @@ namespace nsfd
       std::vector<unsigned int> key{unsigned(row.partner), row.obstacle};
       for (const auto &end : contact.ends)
         key.push_back(end.first);
-      const auto [entry, is_new] =
-          known.emplace(std::move(key), contacts_.size());
+      auto &alike = known[std::move(key)];
+      const auto entry =
+          std::find_if(alike.begin(), alike.end(), [&](const std::size_t k) {
+            double along = 0.;
+            for (unsigned int c = 0; c < dim; ++c)
+              along += contacts_[k].frame[c] * contact.frame[c];
+            return along > same_normal;
+          });
       std::vector<std::size_t> places = {row.place};
       if (row.twin != row.nowhere)
         places.push_back(row.twin);
@@ -425,13 +433,14 @@ namespace nsfd
            part_of_[row.body_1] == part_of_[row.body_2]);
       if (is_new_surface && state_.last_step > 0. && -row.gap > explained)
         explained = contact.row.overlap = -row.gap;
-      if (!is_new) {
-        Contact &same = contacts_[entry->second];
+      if (entry != alike.end()) {
+        Contact &same = contacts_[*entry];
         same.row.weight += row.weight;
         same.places.insert(same.places.end(), places.begin(), places.end());
         same.known = std::max(same.known, explained);
         continue;
       }
+      alike.push_back(contacts_.size());
       contact.places = std::move(places);
       contact.known = explained;
       using Partner = typename MovingRow<dim>::Partner;
@@ -472,10 +481,11 @@ namespace nsfd
       }
       if (contact.impulse[0] == 0.)
         contact.impulse = {};
-      else {
-        contact.pushes = true;
+      // what has pushed, and what would close: to find these by solving without
+      // them takes a solution more
+      contact.pushes = contact.impulse[0] > 0. || before < contact.target;
+      if (contact.pushes)
         chosen_.push_back(unsigned(contacts_.size()));
-      }
       contacts_.push_back(std::move(contact));
     }
   }

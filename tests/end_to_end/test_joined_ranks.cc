@@ -125,7 +125,7 @@ end
         {"flowing_tetrahedra",
          {"dimension=3", "Mesh/type=tetrahedra", origin, corner,
           "Mesh/cells=4, 3, 2", "Material: bulk/model=viscoplastic",
-          "Material: bulk/yield stress=250 MPa",
+          "Material: bulk/yield stress=300 MPa",
           "Material: bulk/viscosity=0.1 Pa*s", "Time/end=9 ns"}},
         // cells of two and three sizes
         {"refined_quads",

@@ -45,6 +45,17 @@ namespace nsfd::large_motion_scenes::test_large_motion_input
     EXPECT_EQ(strain->materials[1].model_name, "neo-hookean");
   }
 
+  // Without a model, that which bodies of any motion can have.
+  TEST(LargeMotionInput, ModelFollowsFromTheMotion)
+  {
+    const std::string none =
+        replaced(plane, "  set model = saint-venant kirchhoff\n", "");
+    EXPECT_EQ(read_good(none)->materials[1].model_name,
+              "saint-venant kirchhoff");
+    EXPECT_EQ(read_good(none, {"plane=strain"})->materials[1].model_name,
+              "neo-hookean");
+  }
+
   TEST(LargeMotionInput, RigidBodies)
   {
     const auto scene = read_good(space);

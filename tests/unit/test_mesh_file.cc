@@ -114,6 +114,14 @@ namespace test_mesh_file
     }
   }
 
+  // A file without a type is a mesh all the same.
+  TEST(MeshFile, TypeFollowsFromTheFile)
+  {
+    std::string text = from_file("plate_41_ascii.msh", "set length unit = mm");
+    text.erase(0, text.find('\n') + 1);
+    expect_plate(BuiltMesh<2>(mesh_scene(2, text)), 1e-3);
+  }
+
   TEST(MeshFile, UcdAndVtkHaveNumbers)
   {
     expect_plate(BuiltMesh<2>(mesh_scene(

@@ -14,14 +14,23 @@ namespace nsfd
     constexpr double least_softening = 1e-12;
     /// where a step goes too far, less is of no use
     constexpr double least_help = 1e-2;
-    constexpr unsigned int most_flat_moves = 100;
+    /// more are points of several nodes that contacts join
+    constexpr std::size_t of_a_node = 24;
 
     /** Of a cluster each start takes the more time the larger it is, and what
         helps one has done so after few: 12 of 118 points that shatter. */
     unsigned int most_starts(const std::size_t n_points)
     {
-      constexpr std::size_t most = 60, least = 8, of_a_node = 24;
+      constexpr std::size_t most = 60, least = 8;
       return unsigned(std::clamp(most * of_a_node / n_points, least, most));
+    }
+
+    /** Around a node they lead to the point that is to be released; in a
+        cluster most of them lead nowhere, and a way by softer laws is at hand.
+     */
+    unsigned int most_flat_moves(const std::size_t n_points)
+    {
+      return n_points > of_a_node ? 15 : 100;
     }
   } // namespace
 
@@ -54,7 +63,7 @@ namespace nsfd
     const bool falls =
         next <= aim * system_.scale() || next < (1. - 0.2 * length) * error_;
     const bool flat = (!first || flat_moves_ > 0) && next <= 1.01 * error_ &&
-                      flat_moves_ < most_flat_moves;
+                      flat_moves_ < most_flat_moves(system_.n_points());
     if (!falls && !flat)
       return false;
     flat_moves_ += !falls;
@@ -153,7 +162,8 @@ namespace nsfd
         if (error_ <= control * system_.scale())
           return true;
       }
-      if (report_.starts >= most_starts(system_.n_points()))
+      if (report_.starts >= most_starts(system_.n_points()) ||
+          error_ <= enough_ * system_.scale())
         break;
       // S may jump where it is asked once more
       if (follow() && error_ <= control * system_.scale())
@@ -172,9 +182,11 @@ namespace nsfd
                                     const std::vector<double> &frames,
                                     NodeProblem<dim> &node,
                                     std::vector<double> &impulses,
-                                    std::vector<LocalSolution<dim>> &solutions)
+                                    std::vector<LocalSolution<dim>> &solutions,
+                                    const double enough)
   {
     report_ = {};
+    enough_ = enough;
     system_.reinit(problem, frames, node, impulses, solutions);
     if (system_.n_points() == 0)
       return report_;

@@ -42,12 +42,14 @@ namespace nsfd
     /**
      * Impulses (dim per point of the problem, local frame, N s) are the start
      * and the solution. @p frames: dim * dim per point, rows n, t1, t2. Of
-     * @p solutions those of the points of the node are set.
+     * @p solutions those of the points of the node are set. What has come to
+     * rest at a residual below @p enough is not begun again.
      */
     NodeReport solve(const OneStepProblem<dim> &problem,
                      const std::vector<double> &frames, NodeProblem<dim> &node,
                      std::vector<double> &impulses,
-                     std::vector<LocalSolution<dim>> &solutions);
+                     std::vector<LocalSolution<dim>> &solutions,
+                     double enough = 0.);
 
     /** Of the problem that was solved last: see NodeSystem. */
     bool respond(const std::vector<int> &groups, std::vector<double> &response)
@@ -58,7 +60,7 @@ namespace nsfd
   private:
     NodeSystem<dim> system_;
     NodeReport report_;
-    double error_ = 0., best_ = 0., soft_ = 0.;
+    double error_ = 0., best_ = 0., soft_ = 0., enough_ = 0.;
     unsigned int flat_moves_ = 0;
 
     bool run();
