@@ -35,6 +35,10 @@ namespace nsfd
     }
     const std::vector<Point> &points() const override { return points_; }
     PointState at(std::size_t point) const override;
+    double beta(std::size_t point) const override
+    {
+      return motion_.state()->beta[point];
+    }
     std::vector<Place> places(const NamedSurface &surface) const override;
     Vector reaction(unsigned int boundary) const override;
     double broken_beta(std::size_t point) const override;

@@ -74,6 +74,8 @@ namespace nsfd
       double pressure = 0.; ///< of the contact, Pa; mean of the step
     };
     virtual PointState at(std::size_t point) const = 0;
+    /** That of at(), which takes time, alone. */
+    virtual double beta(std::size_t point) const = 0;
 
     /** A place of an obstacle, an interface or a contact. */
     struct Place {

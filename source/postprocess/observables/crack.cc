@@ -64,11 +64,11 @@ namespace nsfd
     double crossings(const RunView &view, const double section) const
     {
       std::vector<double> terms;
-      for (std::size_t i = 0; i < view.points().size(); ++i) {
+      for (const std::size_t i : front_.broken()) {
         const auto &ends = view.points()[i].ends;
         const bool first = product(ends[0], front_.direction()) < section,
                    second = product(ends[1], front_.direction()) < section;
-        if (first != second && front_.is_broken(view, i))
+        if (first != second)
           terms.push_back(1.);
       }
       return view.sums(terms, 1)[0];

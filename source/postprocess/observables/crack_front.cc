@@ -28,7 +28,7 @@ namespace nsfd::observables
     const PointOrigin origin = view.points()[i].origin;
     return origin.kind == PointOrigin::Kind::interface &&
            faces_[origin.block] &&
-           view.at(i).beta <= beta_.value_or(view.broken_beta(i));
+           view.beta(i) <= beta_.value_or(view.broken_beta(i));
   }
 
   void CrackFront::measure(const RunView &view)
@@ -38,9 +38,11 @@ namespace nsfd::observables
     std::vector<double> areas;
     double farthest = none;
     std::vector<Vector> first;
+    broken_.clear();
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!is_broken(view, i))
         continue;
+      broken_.push_back(i);
       areas.push_back(points[i].area);
       for (const Vector &end : points[i].ends) {
         const double along = product(end, direction_);

@@ -34,11 +34,13 @@ namespace nsfd::observables
 
     const Vector &direction() const { return direction_; }
     const std::vector<char> &faces() const { return faces_; }
-    bool is_broken(const RunView &view, std::size_t point) const;
+    /** Points that are broken, as of the last follow(). */
+    const std::vector<std::size_t> &broken() const { return broken_; }
     std::string text(const SceneInput &scene) const;
     void serialize(Archive &archive);
 
   private:
+    bool is_broken(const RunView &view, std::size_t point) const;
     void measure(const RunView &view);
     double median_slope(unsigned int x, unsigned int y) const;
 
@@ -51,6 +53,7 @@ namespace nsfd::observables
     std::optional<double> window_; ///< s
     double length_ = 0.;
     std::optional<Vector> tip_;
+    std::vector<std::size_t> broken_;
     std::vector<Event> events_;
   };
 } // namespace nsfd::observables
