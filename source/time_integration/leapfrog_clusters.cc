@@ -248,10 +248,10 @@ namespace nsfd
       fetch();
       const auto attempt = [&] {
         all.velocity = free;
-        // a tenth of what a step may leave over: what crushes has hundreds of
-        // contacts, and the last digits of it no more than round-off
+        // what crushes has hundreds of contacts, and takes a hundred times as
+        // long for digits that no step asks for
         report = solver_.solve(problem, frames, all, impulses, solutions,
-                               0.1 * tolerance);
+                               tolerance);
         outcome.sweeps += report.sweeps;
         outcome.newton += report.newton;
         ++outcome.problems;

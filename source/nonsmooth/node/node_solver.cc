@@ -162,8 +162,10 @@ namespace nsfd
         if (error_ <= control * system_.scale())
           return true;
       }
+      // the first new start is for what is nearly there, others are not
+      const double enough = (report_.starts == 0 ? 0.1 : 1.) * enough_;
       if (report_.starts >= most_starts(system_.n_points()) ||
-          error_ <= enough_ * system_.scale())
+          error_ <= enough * system_.scale())
         break;
       // S may jump where it is asked once more
       if (follow() && error_ <= control * system_.scale())
