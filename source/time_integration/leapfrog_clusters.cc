@@ -250,8 +250,8 @@ namespace nsfd
         all.velocity = free;
         // what crushes has hundreds of contacts, and takes a hundred times as
         // long for digits that no step asks for
-        report = solver_.solve(problem, frames, all, impulses, solutions,
-                               tolerance);
+        report =
+            solver_.solve(problem, frames, all, impulses, solutions, tolerance);
         outcome.sweeps += report.sweeps;
         outcome.newton += report.newton;
         ++outcome.problems;
