@@ -440,6 +440,15 @@ namespace nsfd
         same.known = std::max(same.known, explained);
         continue;
       }
+      // two normals may have no way out of both overlaps: none goes deeper
+      const bool has_others = !alike.empty();
+      const auto hold = [](Contact &one) {
+        one.least = std::min(one.least, 0.);
+        one.target = std::min(one.target, 0.);
+      };
+      if (has_others)
+        for (const std::size_t k : alike)
+          hold(contacts_[k]);
       alike.push_back(contacts_.size());
       contact.places = std::move(places);
       contact.known = explained;
@@ -473,6 +482,8 @@ namespace nsfd
           contact.impulse[r] += row.share * contact.frame[r * dim + c] *
                                 state_.surface_impulse[row.place * dim + c];
       contact.impulse[0] = std::max(contact.impulse[0], 0.);
+      if (has_others)
+        hold(contact);
       // no impulse keeps apart what is driven together: the overlap tells
       if (!contact.can_part) {
         contact.impulse = {};
