@@ -170,26 +170,26 @@ namespace nsfd
                                                        : 0.;
   }
 
-  /** Rows: weight, displacement, velocity, stress, times the weight. */
-  template <int dim>
-  RunView::Means RunViewOf<dim>::mean_of(const std::vector<double> &terms) const
-  {
-    const auto s = sums(terms, 13);
-    Means means;
-    means.size = s[0];
-    if (!(s[0] > 0.))
-      return means;
-    for (unsigned int c = 0; c < 3; ++c) {
-      means.displacement[c] = s[1 + c] / s[0];
-      means.velocity[c] = s[4 + c] / s[0];
-    }
-    for (unsigned int c = 0; c < 6; ++c)
-      means.stress[c] = s[7 + c] / s[0];
-    return means;
-  }
-
   namespace
   {
+    /** Rows: weight, displacement, velocity, stress, times the weight. */
+    RunView::Means mean_of(const RunView &view,
+                           const std::vector<double> &terms)
+    {
+      const auto s = view.sums(terms, 13);
+      RunView::Means means;
+      means.size = s[0];
+      if (!(s[0] > 0.))
+        return means;
+      for (unsigned int c = 0; c < 3; ++c) {
+        means.displacement[c] = s[1 + c] / s[0];
+        means.velocity[c] = s[4 + c] / s[0];
+      }
+      for (unsigned int c = 0; c < 6; ++c)
+        means.stress[c] = s[7 + c] / s[0];
+      return means;
+    }
+
     /** Fills column @p k of terms with @p n columns. */
     template <int dim>
     void add_terms(std::vector<double> &terms, const std::size_t n,
@@ -231,7 +231,7 @@ namespace nsfd
               .at(b, sampler, s, motion_.displacement(), motion_.velocity())
               .stress);
     }
-    return mean_of(terms);
+    return mean_of(*this, terms);
   }
 
   template <int dim>
@@ -257,7 +257,7 @@ namespace nsfd
               .at(b, sampler, 0, motion_.displacement(), motion_.velocity())
               .stress);
     }
-    return mean_of(terms);
+    return mean_of(*this, terms);
   }
 
   template <int dim>

@@ -59,7 +59,6 @@ namespace nsfd
 
   private:
     void find_points();
-    Means mean_of(const std::vector<double> &terms) const;
 
     const SceneInput &input_;
     const Discretization<dim> &discretization_;

@@ -397,7 +397,6 @@ namespace nsfd
 
     // cells around a node meet the same facet at one place; where corners meet,
     // the facets around a vertex have one end and several normals
-    constexpr double same_normal = 0.999;
     std::map<std::vector<unsigned int>, std::vector<std::size_t>> known;
     for (const auto &row : surfaces_.rows(state_, h, std::sqrt(speed))) {
       Contact contact;
@@ -442,13 +441,8 @@ namespace nsfd
       }
       // two normals may have no way out of both overlaps: none goes deeper
       const bool has_others = !alike.empty();
-      const auto hold = [](Contact &one) {
-        one.least = std::min(one.least, 0.);
-        one.target = std::min(one.target, 0.);
-      };
-      if (has_others)
-        for (const std::size_t k : alike)
-          hold(contacts_[k]);
+      for (const std::size_t k : alike)
+        contacts_[k].hold();
       alike.push_back(contacts_.size());
       contact.places = std::move(places);
       contact.known = explained;
@@ -483,7 +477,7 @@ namespace nsfd
                                 state_.surface_impulse[row.place * dim + c];
       contact.impulse[0] = std::max(contact.impulse[0], 0.);
       if (has_others)
-        hold(contact);
+        contact.hold();
       // no impulse keeps apart what is driven together: the overlap tells
       if (!contact.can_part) {
         contact.impulse = {};

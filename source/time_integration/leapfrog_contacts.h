@@ -9,6 +9,7 @@
 #include "joined/corner_groups.h"
 #include "nonsmooth/one_step_problem.h"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -85,6 +86,7 @@ namespace nsfd
     /** The impulses of the last clusters(). */
     void take(const std::vector<Cluster> &clusters);
     static constexpr double part_of_tolerance = 1e-4;
+    static constexpr double same_normal = 0.999; ///< cosine between two
     /** The others that push: their impulses, and what these do to the
        velocities of @p groups, which have none of them, and @p of_bodies, see
        RigidGroups::move(). What is left over of a problem with rigid bodies,
@@ -141,6 +143,12 @@ namespace nsfd
         for (unsigned int c = 1; c < dim; ++c)
           result[c] = -obstacle[c] + (turned ? before[c] : 0.);
         return result;
+      }
+      /** It goes no deeper, and is not pushed apart. */
+      void hold()
+      {
+        least = std::min(least, 0.);
+        target = std::min(target, 0.);
       }
       Vector in_frame(const Vector &v) const
       {
