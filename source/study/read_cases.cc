@@ -59,6 +59,16 @@ namespace nsfd
       return path.compare(0, 6, "Study/") != 0 && path != "Output/directory";
     }
 
+    /** That gives the values of @p path; empty: the command line. */
+    std::string file_of(const StudyInput &study, const std::string &path)
+    {
+      for (const Variation &variation : study.variations)
+        for (const auto &parameter : variation.parameters)
+          if (parameter.path == path)
+            return parameter.file;
+      return "";
+    }
+
     /** Assignments for the scene of a case; @p more replace others. */
     std::vector<Assignment> assignments(const StudyInput &study,
                                         const Combination &combination,
@@ -72,7 +82,7 @@ namespace nsfd
           all.push_back({assignment});
       for (const auto &[path, value] : combination.parameters)
         if (is_for_scenes(path))
-          all.push_back({path + "=" + value, combination.file_of(path)});
+          all.push_back({path + "=" + value, file_of(study, path)});
       const auto find = [&all](const std::string &path) {
         return std::find_if(all.begin(), all.end(),
                             [&path](const Assignment &assignment) {

@@ -288,12 +288,9 @@ namespace nsfd
       Combination one;
       one.index = index;
       for (std::size_t v = 0; v < variations.size(); ++v) {
-        for (const auto &parameter : variations[v].parameters) {
+        for (const auto &parameter : variations[v].parameters)
           one.parameters.emplace_back(parameter.path,
                                       Variation::value(parameter, index[v]));
-          if (!parameter.file.empty())
-            one.files[parameter.path] = parameter.file;
-        }
         if (variations[v].is_constant())
           continue;
         const auto &leader = variations[v].leader();

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -65,15 +64,7 @@ namespace nsfd
     std::string name;               ///< of its folder: letters, digits, =_-+.
     std::vector<std::size_t> index; ///< value of each variation
     std::vector<std::pair<std::string, std::string>>
-        parameters;                           ///< path, value
-    std::map<std::string, std::string> files; ///< that give values, by path
-
-    /** The file that gives the value of @p path; empty: the command line. */
-    std::string file_of(const std::string &path) const
-    {
-      const auto found = files.find(path);
-      return found == files.end() ? "" : found->second;
-    }
+        parameters; ///< path, value
   };
 
   /** The first variation changes slowest. Names are unique. */

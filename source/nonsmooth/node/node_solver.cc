@@ -162,7 +162,7 @@ namespace nsfd
         if (error_ <= control * system_.scale())
           return true;
       }
-      // the first new start is for what is nearly there, others are not
+      // nearly there is worth one more attempt, not several
       const double enough = (report_.starts == 0 ? 0.1 : 1.) * enough_;
       if (report_.starts >= most_starts(system_.n_points()) ||
           error_ <= enough * system_.scale())

@@ -42,9 +42,9 @@ namespace nsfd
     /**
      * Impulses (dim per point of the problem, local frame, N s) are the start
      * and the solution. @p frames: dim * dim per point, rows n, t1, t2. Of
-     * @p solutions those of the points of the node are set. What has come to
-     * rest at a residual below a tenth of @p enough is not begun again, and
-     * what is below it only once.
+     * @p solutions those of the points of the node are set. The first
+     * attempt that comes to rest at a residual below a tenth of @p enough, or a
+     * later one below all of it, is the last.
      */
     NodeReport solve(const OneStepProblem<dim> &problem,
                      const std::vector<double> &frames, NodeProblem<dim> &node,
