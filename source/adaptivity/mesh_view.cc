@@ -116,8 +116,8 @@ namespace nsfd
     discretization.visit_quadrature(
         discretization.to_nodal(displacement),
         [&](const unsigned int body, const dealii::Point<dim> &x,
-            const double JxW, const double *, const double *gradient) {
-          const auto stress = discretization.stress(body, x, gradient);
+            const double JxW, const double *value, const double *gradient) {
+          const auto stress = discretization.stress(body, x, value, gradient);
           for (unsigned int c = 0; c < 6; ++c)
             mean[body][c] +=
                 JxW / discretization.cells().volume(body) * stress[c];

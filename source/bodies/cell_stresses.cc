@@ -98,10 +98,10 @@ namespace nsfd
   template <int dim>
   typename CellStresses<dim>::Stress
   CellStresses<dim>::visit(const unsigned int body, const dealii::Point<dim> &x,
-                           const double *gradient)
+                           const double *value, const double *gradient)
   {
     if (!is_history_dependent(body))
-      return discretization_.stress(body, x, gradient);
+      return discretization_.stress(body, x, value, gradient);
     if (body != body_)
       point_ = 0;
     body_ = body;
@@ -123,16 +123,17 @@ namespace nsfd
     std::vector<Stress> viscous; // in the order of the visits
     if (discretization_.input().has_viscous_bodies())
       discretization_.visit_quadrature(
-          velocity, [&](const unsigned int body, const dealii::Point<dim> &,
-                        double, const double *, const double *rate) {
-            viscous.push_back(discretization_.viscous_stress(body, rate));
+          velocity, [&](const unsigned int body, const dealii::Point<dim> &x,
+                        double, const double *value, const double *rate) {
+            viscous.push_back(
+                discretization_.viscous_stress(body, x, value, rate));
           });
     std::size_t k = 0;
     discretization_.visit_quadrature(
         displacement,
         [&](const unsigned int body, const dealii::Point<dim> &x,
-            const double JxW, const double *, const double *gradient) {
-          Stress sigma = visit(body, x, gradient);
+            const double JxW, const double *value, const double *gradient) {
+          Stress sigma = visit(body, x, value, gradient);
           if (!viscous.empty())
             for (unsigned int c = 0; c < 6; ++c)
               sigma[c] += viscous[k][c];
@@ -223,13 +224,21 @@ namespace nsfd
     }
     const auto corners = discretization_.cells().corners[body];
     const std::size_t node = discretization_.cells().first_node[body] * dim;
-    const auto gradient = sampler.gradient(q, corners, &displacement[node]);
+    const auto x = sampler.position(q, corners);
+    // of no effect in the plane
+    const auto value = [&](const std::vector<double> &nodal) {
+      return discretization_.input().axisymmetric
+                 ? sampler.value(q, &nodal[node])
+                 : dealii::Tensor<1, dim>();
+    };
     Sample result;
-    result.stress = discretization_.stress(body, sampler.position(q, corners),
-                                           gradient.data());
+    result.stress = discretization_.stress(
+        body, x, value(displacement).begin_raw(),
+        sampler.gradient(q, corners, &displacement[node]).data());
     if (discretization_.input().has_viscous_bodies()) {
       const auto viscous = discretization_.viscous_stress(
-          body, sampler.gradient(q, corners, &velocity[node]).data());
+          body, x, value(velocity).begin_raw(),
+          sampler.gradient(q, corners, &velocity[node]).data());
       for (unsigned int c = 0; c < 6; ++c)
         result.stress[c] += viscous[c];
     }

@@ -32,9 +32,9 @@ namespace nsfd
     bool is_history_dependent(unsigned int body) const;
 
     /** At the points of Discretization::visit_quadrature(), in its order, from
-        the displacement gradient there: without that of viscosity. */
+        displacement and gradient there: without that of viscosity. */
     Stress visit(unsigned int body, const dealii::Point<dim> &x,
-                 const double *gradient);
+                 const double *value, const double *gradient);
 
     /** At every quadrature point of every cell of this rank, with that of
         viscosity, from nodal displacements and velocities of the mesh. */

@@ -110,7 +110,8 @@ namespace nsfd
     std::string diagrams(const Comparison &comparison,
                          const std::string &directory)
     {
-      const Units units(comparison.runs[0].dimension);
+      const Units units(comparison.runs[0].dimension,
+                        comparison.runs[0].axisymmetric);
       std::string html;
       const auto add = [&](const std::string &file, const LineChart &chart) {
         write_file_atomically(directory + "/" + file + ".svg",

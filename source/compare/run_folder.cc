@@ -61,6 +61,7 @@ namespace nsfd
         run.failure = json["failure"].get<std::string>();
       add_numbers(json, "", run);
       run.dimension = unsigned(run.number("dimension").value_or(2.));
+      run.axisymmetric = json.value("axisymmetric", Json(false)) == Json(true);
       const Json judged = json.value("certificate", Json::object());
       const Json lines = judged.value("lines", Json::object());
       for (const auto &[name, line] : lines.items())

@@ -18,6 +18,7 @@ namespace nsfd
     bool completed = false;
     std::string failure;
     unsigned int dimension = 2;
+    bool axisymmetric = false;
     /// all numbers as `energy/kinetic`, in the order of the file
     std::vector<std::pair<std::string, double>> numbers;
     /// of its certificate: name, verdict

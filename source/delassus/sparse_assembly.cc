@@ -134,11 +134,14 @@ namespace nsfd
         side.support.push_back(static_cast<unsigned short>(j));
       return side;
     }
-    // nodal functions are of order one somewhere on the face or vanish on it
+    // nodal functions are of order one somewhere on the face or vanish on it;
+    // by the last component, which moves on the axis of a scene, too
+    constexpr unsigned int last = dim - 1;
     for (unsigned int j = 0; j < n; j += dim) {
       double largest = 0.;
       for (unsigned int p = f.first; p < f.first + f.count; ++p)
-        largest = std::max(largest, std::abs(trace(places_[s][p], 0, j)));
+        largest =
+            std::max(largest, std::abs(trace(places_[s][p], last, j + last)));
       if (largest > 1e-10)
         for (unsigned int c = 0; c < dim; ++c)
           side.support.push_back(static_cast<unsigned short>(j + c));
@@ -361,7 +364,8 @@ namespace nsfd
         for (std::size_t j = 0; j < own.support.size() && carries; j += dim) {
           double springs[dim] = {}, diagonal = 0.;
           for (unsigned int p = face.first; p < face.first + face.count; ++p) {
-            const double N = trace(places_[side_number][p], 0, own.support[j]);
+            const double N = trace(places_[side_number][p], dim - 1,
+                                   own.support[j] + dim - 1);
             for (unsigned int r = 0; r < dim; ++r)
               springs[r] += k[std::size_t(p) * dim + r] * N * N;
           }
@@ -419,7 +423,8 @@ namespace nsfd
             const double N = trace(places_[t][p], i % dim, i);
             sum += N * N;
           }
-          largest = std::max(largest, step_entry(body, s, i, i) / sum);
+          if (sum > 0.) // it moves
+            largest = std::max(largest, step_entry(body, s, i, i) / sum);
         }
         for (unsigned int p = face.first; p < face.first + face.count; ++p)
           result[t][p] = largest;

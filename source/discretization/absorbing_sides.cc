@@ -49,12 +49,13 @@ namespace nsfd
         const Tensor<1, dim> normal = face.normal(xi); // times the measure
         const double measure = normal.norm();
         const Tensor<1, dim> n = normal / measure;
+        const double w = measure * quadrature.weight(q) *
+                         radius_or_one(shape, face.position(xi));
         std::array<double, dim * dim> drag;
         for (unsigned int c = 0; c < dim; ++c)
           for (unsigned int d = 0; d < dim; ++d)
             drag[c * dim + d] =
-                measure * quadrature.weight(q) *
-                ((of_p - of_s) * n[c] * n[d] + (c == d ? of_s : 0.));
+                w * ((of_p - of_s) * n[c] * n[d] + (c == d ? of_s : 0.));
         for (unsigned int i = 0; i < shape.n_nodes; ++i)
           values[i] = element.shape_value(i, face.in_reference_cell(xi));
         visit(values, drag);

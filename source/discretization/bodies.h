@@ -132,6 +132,7 @@ namespace nsfd
     /// to the last bit, all points of a face have one frame
     bool frame_of_face = false;
     std::vector<double> weight; ///< JxW in m (2D) or m^2
+    bool axisymmetric = false;  ///< weights are times the radius, in m^2
     /// points of one face are consecutive
     struct Face {
       unsigned int first = 0, count = 0;
@@ -160,6 +161,13 @@ namespace nsfd
     {
       return frames.data() +
              (frame_of_face ? face_of[point] : point) * dim * dim;
+    }
+    /** Its share of the face as it is drawn: of an axisymmetric scene in the
+        half-plane, in m. */
+    double measure(const std::size_t point) const
+    {
+      return axisymmetric ? weight[point] / position[point * dim]
+                          : weight[point];
     }
     /** dim x dim per point. */
     std::vector<double> frames_of_points() const;

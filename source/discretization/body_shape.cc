@@ -2,6 +2,7 @@
 
 #include "absorbing_sides.h"
 
+#include "axis.h"
 #include "interface_quadrature.h"
 
 #include "cell_geometry.h"
@@ -24,30 +25,35 @@ namespace nsfd
   {
     template <int dim>
     Quadrature<dim> cell_quadrature(const ReferenceCell &cell,
-                                    const unsigned int n)
+                                    const SceneInput &input)
     {
+      const unsigned int n = input.discretization.degree + 1;
+      if (input.axisymmetric)
+        return ring_quadrature<dim>(cell, n);
       if (cell.is_simplex())
         return QGaussSimplex<dim>(n);
       return QGauss<dim>(n);
     }
 
-    /** Volume over the largest face, the lowest height of a simplex. */
+    /** @p volume over the largest face, the lowest height of a simplex. */
     template <int dim>
-    double height(const BodyShape<dim> &shape)
+    double height(const BodyShape<dim> &shape, const double volume)
     {
       double largest_face = 0.;
       for (unsigned int f = 0; f < shape.reference.n_faces(); ++f)
         largest_face = std::max(
             largest_face,
             FaceGeometry<dim>(shape.reference, shape.corners, f).measure());
-      return shape.volume / largest_face *
-             (shape.reference.is_simplex() ? dim : 1);
+      return volume / largest_face * (shape.reference.is_simplex() ? dim : 1);
     }
 
-    /** Velocity = translation of the centre + rotation, lengths scaled. */
+    /** Velocity = translation of the centre + rotation, lengths scaled; of
+        axisymmetric bodies the translation along the axis. */
     template <int dim>
     Block rigid_modes(const BodyShape<dim> &shape, const double size)
     {
+      if (is_axisymmetric(shape))
+        return motion_along_axis(shape);
       Block modes(shape.n_nodes * dim, dim == 2 ? 3 : 6);
       for (unsigned int i = 0; i < shape.n_nodes; ++i) {
         const Tensor<1, dim> r = (shape.nodes[i] - shape.centre) / size;
@@ -141,9 +147,15 @@ namespace nsfd
     double traction_bound(const BodyShape<dim> &shape, const BodyClass &body)
     {
       Block weighted = body.traction;
-      for (unsigned int k = 0; k < weighted.rows; ++k)
+      for (unsigned int k = 0; k < weighted.rows; ++k) {
+        // on the axis round-off is on both sides of 0
+        const double radius =
+            radius_or_one(shape, shape.slot_positions[k / dim]);
+        const double weight =
+            shape.slot_normals[k / dim].norm() * std::max(0., radius);
         for (unsigned int j = 0; j < weighted.cols; ++j)
-          weighted(k, j) *= std::sqrt(shape.slot_normals[k / dim].norm());
+          weighted(k, j) *= std::sqrt(weight);
+      }
       return largest_ratio(weighted, body.stiffness, body.rigid_motions);
     }
   } // namespace
@@ -152,8 +164,7 @@ namespace nsfd
   ClassBuilder<dim>::ClassBuilder(const FiniteElement<dim> &element,
                                   const SceneInput &input)
       : element_(element), input_(input),
-        cell_rule_(cell_quadrature<dim>(element.reference_cell(),
-                                        input.discretization.degree + 1)),
+        cell_rule_(cell_quadrature<dim>(element.reference_cell(), input)),
         face_rule_(interface_quadrature<dim>(
             input.discretization, element.reference_cell().is_simplex())),
         no_blocks_(input.time.scheme.at_nodes &&
@@ -179,7 +190,8 @@ namespace nsfd
   template <int dim>
   void ClassBuilder<dim>::build(const ReferenceCell &reference,
                                 const std::vector<Point<dim>> &corners,
-                                const double size, const unsigned int material,
+                                const double size, const double corner_radius,
+                                const unsigned int material,
                                 const unsigned int divided,
                                 const std::vector<LocalModuli> &moduli,
                                 BodyShape<dim> &shape, BodyClass &body) const
@@ -190,6 +202,9 @@ namespace nsfd
     shape.corners = corners;
     shape.moduli = moduli;
     set_tables(shape);
+    shape.corner_radius = corner_radius;
+    if (input_.axisymmetric)
+      set_axis(shape);
     set_elasticity(shape, material);
     body.material = material;
     body.undeformed = input.rigid;
@@ -247,6 +262,7 @@ namespace nsfd
     for (unsigned int f = 0; f < shape.reference.n_faces(); ++f)
       if (faces >> f & 1u)
         add(absorbing_block(element_, shape, f), body.absorbing);
+    hold_unknowns(shape, body.absorbing);
     if (body.damping.rows == 0)
       body.damping = Block(body.n_dofs, body.n_dofs);
     add(body.absorbing, body.damping);
@@ -327,7 +343,7 @@ namespace nsfd
       }
     }
     shape.centre /= shape.volume;
-    shape.height = height(shape);
+    shape.height = height(shape, shape.volume);
   }
 
   template <int dim>
@@ -373,6 +389,7 @@ namespace nsfd
         for (unsigned int c = 0; c < dim; ++c)
           mass(i * dim + c, j * dim + c) =
               i == j ? scalar(i, i) : (scalar(i, j) + scalar(j, i)) / 2.;
+    hold_unknowns(shape, mass);
     return mass;
   }
 
@@ -394,10 +411,13 @@ namespace nsfd
               stiffness(i * dim + c, j * dim + d) +=
                   shape.JxW[q] * at_place(local, q).coupling(c, d, gi, gj);
         }
+    if (is_axisymmetric(shape))
+      add_hoop(shape, local, stiffness);
     // symmetric to the last bit: the upper half is a copy of the lower one
     for (unsigned int i = 0; i < n * dim; ++i)
       for (unsigned int j = 0; j < i; ++j)
         stiffness(j, i) = stiffness(i, j);
+    hold_unknowns(shape, stiffness);
     return stiffness;
   }
 
@@ -413,6 +433,7 @@ namespace nsfd
         for (unsigned int c = 0; c < dim; ++c)
           trace(s * dim + c, i * dim + c) = value;
       }
+    hold_columns(shape, trace);
     return trace;
   }
 
@@ -423,6 +444,7 @@ namespace nsfd
   {
     const unsigned int n = shape.n_nodes;
     Block traction(body.n_slots * dim, n * dim);
+    const std::vector<double> hoop = hoop_at_slots(shape);
     for (unsigned int s = 0; s < body.n_slots; ++s) {
       const auto &place = shape.slot_places[s];
       const auto &law = at_place(local, shape.JxW.size() + s);
@@ -440,8 +462,13 @@ namespace nsfd
         for (unsigned int c = 0; c < dim; ++c)
           for (unsigned int d = 0; d < dim; ++d)
             traction(s * dim + c, i * dim + d) = law.coupling(c, d, normal, g);
+        if (is_axisymmetric(shape))
+          for (unsigned int c = 0; c < dim; ++c)
+            traction(s * dim + c, i * dim) +=
+                law.lambda * hoop[s * n + i] * normal[c];
       }
     }
+    hold_columns(shape, traction);
     return traction;
   }
 

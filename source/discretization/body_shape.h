@@ -24,6 +24,10 @@ namespace nsfd
   struct MaterialInput;
   struct SceneInput;
 
+  /// over the height of a cell, the radius up to which a place is on the axis
+  /// of an axisymmetric scene
+  constexpr double axis_tolerance = 1e-9;
+
   /**
    * What the bodies of one class share besides their blocks: tables of the
    * cell with its corner 0 at the origin. Bodies of a class without blocks (see
@@ -36,7 +40,11 @@ namespace nsfd
     unsigned int divided = 0; ///< bit f: there are smaller cells behind face f
     unsigned int n_nodes = 0;
     std::vector<dealii::Point<dim>> nodes;
-    // cell quadrature: positions, JxW, values and gradients (point x node)
+    /// of axisymmetric scenes: of corner 0; that of a place is in radius_at()
+    double corner_radius = 0.;
+    std::vector<char> on_axis; ///< the same, by node: it has no radial motion
+    // cell quadrature: positions, JxW (of axisymmetric scenes times the
+    // radius), values and gradients (point x node)
     std::vector<dealii::Point<dim>> positions;
     std::vector<double> JxW;
     std::vector<double> values;
@@ -46,7 +54,7 @@ namespace nsfd
     std::vector<dealii::Point<dim>> slot_places;      ///< in the reference cell
     std::vector<unsigned int> slot_faces;
     std::vector<double> corner_values; ///< corner x node
-    double volume = 0.;
+    double volume = 0.;                ///< of axisymmetric scenes per radian
     dealii::Point<dim> centre;
     double height = 0.; ///< way of a wave through the cell
     /// of a graded material, at the positions of the quadrature and, in scenes
@@ -58,6 +66,28 @@ namespace nsfd
     Block projection;          ///< rigid: unknowns = projection * nodal values
     Block nodal_mass;          ///< rigid: of the nodal values
   };
+
+  template <int dim>
+  bool is_axisymmetric(const BodyShape<dim> &shape)
+  {
+    return !shape.on_axis.empty();
+  }
+
+  /** Of an axisymmetric one, at a place relative to corner 0. */
+  template <int dim>
+  double radius_at(const BodyShape<dim> &shape,
+                   const dealii::Point<dim> &relative)
+  {
+    return shape.corner_radius + relative[0];
+  }
+
+  /** What measures there are times. */
+  template <int dim>
+  double radius_or_one(const BodyShape<dim> &shape,
+                       const dealii::Point<dim> &relative)
+  {
+    return is_axisymmetric(shape) ? radius_at(shape, relative) : 1.;
+  }
 
   /** The shape of a body: kept by its class, or made when it is asked for, in
       memory that is given back for the next one. */
@@ -122,6 +152,11 @@ namespace nsfd
    * (hypercubes only) those of its halves or quarters, one after the other.
    * @p size scales the rotations of a rigid body. Bodies of a graded material
    * are of one class if their moduli are the same everywhere.
+   *
+   * Axisymmetric ones are integrated with r dr dz and have the hoop strain
+   * u_r / r as well, and are of one class if their @p corner_radius is the
+   * same. Nodes on the axis do not move radially: those unknowns have no row
+   * in traces, tractions and forces, and of a matrix only their diagonal.
    */
   template <int dim>
   class ClassBuilder
@@ -133,9 +168,9 @@ namespace nsfd
 
     void build(const dealii::ReferenceCell &reference,
                const std::vector<dealii::Point<dim>> &corners, double size,
-               unsigned int material, unsigned int divided,
-               const std::vector<LocalModuli> &moduli, BodyShape<dim> &shape,
-               BodyClass &body) const;
+               double corner_radius, unsigned int material,
+               unsigned int divided, const std::vector<LocalModuli> &moduli,
+               BodyShape<dim> &shape, BodyClass &body) const;
 
     /** Dashpots on the @p faces (bit f) of a class that is built. */
     void add_absorbing(unsigned int faces, const BodyShape<dim> &shape,
@@ -165,9 +200,17 @@ namespace nsfd
     /** What does not depend on the corners, then what does. */
     void set_tables(BodyShape<dim> &shape) const;
     void set_cell(BodyShape<dim> &shape) const;
+    /** Of a ring: weights, and what is on the axis. */
+    void set_axis(BodyShape<dim> &shape) const;
     void set_slots(BodyShape<dim> &shape) const;
     void set_elasticity(BodyShape<dim> &shape, unsigned int material) const;
     Block mass(const BodyShape<dim> &shape, bool lumped) const;
+    /** To a @p stiffness, that of the strain along the hoops of a ring. */
+    void add_hoop(const BodyShape<dim> &shape,
+                  const std::vector<LinearElasticity<dim>> &local,
+                  Block &stiffness) const;
+    /** Those strains at the slots, slot x node; empty if there are none. */
+    std::vector<double> hoop_at_slots(const BodyShape<dim> &shape) const;
     /** Of @p local at the positions of the quadrature. */
     Block stiffness(const BodyShape<dim> &shape,
                     const std::vector<LinearElasticity<dim>> &local) const;

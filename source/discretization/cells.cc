@@ -57,7 +57,15 @@ namespace nsfd
                                [&](const long long n) { key.push_back(n); });
       }
 
-      double size = 0.;
+      /** Of an axisymmetric scene: rings of one radius are congruent. */
+      void add_radius(const double of_corner)
+      {
+        const double unit = std::ldexp(1., int(key[1]) - 42);
+        key.push_back(std::llround(of_corner / unit));
+        corner_radius = double(key.back()) * unit;
+      }
+
+      double size = 0., corner_radius = 0.;
       std::vector<long long> key; ///< equal for congruent cells
       std::vector<Point<dim>> relative;
     };
@@ -218,7 +226,9 @@ namespace nsfd
           continue;
         }
       }
-      const RoundedCorners<dim> rounded(own_corners);
+      RoundedCorners<dim> rounded(own_corners);
+      if (input.axisymmetric)
+        rounded.add_radius(own_corners[0][0]);
       const unsigned int divided = divided_faces(cell),
                          absorbs = absorbing_bits(corners.size() - 1);
       const Form form = builder.has_no_blocks()
@@ -244,7 +254,7 @@ namespace nsfd
       const unsigned int k = entry->second;
       if (is_new) {
         builder.build(cell->reference_cell(), rounded.relative, rounded.size,
-                      material, divided,
+                      rounded.corner_radius, material, divided,
                       moduli.empty() ? constants[material] : moduli,
                       shapes.emplace_back(), bodies.classes.emplace_back());
         builder.add_absorbing(absorbs, shapes[k], bodies.classes[k]);

@@ -1,5 +1,6 @@
 #include "discretization.h"
 
+#include "axis.h"
 #include "cells.h"
 #include "face_points.h"
 #include "loads.h"
@@ -145,6 +146,37 @@ namespace nsfd
             input.materials[std::size_t(rigid)].name));
     }
 
+    /**
+     * No cell of an axisymmetric scene lies behind the axis. Collective.
+     * @throws std::runtime_error on all ranks.
+     */
+    template <int dim>
+    void check_radii(const Triangulation<dim> &triangulation,
+                     const Communicator &communicator)
+    {
+      Point<dim> worst;
+      bool behind = false;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        for (const unsigned int v : cell->vertex_indices())
+          if (cell->is_locally_owned() &&
+              cell->vertex(v)[0] < -axis_tolerance * cell->diameter() &&
+              (!behind || cell->vertex(v)[0] < worst[0])) {
+            behind = true;
+            worst = cell->vertex(v);
+          }
+      if (!communicator.any(behind))
+        return;
+      const double lowest = communicator.min(worst[0]);
+      const double height = communicator.min(
+          worst[0] == lowest ? worst[1]
+                             : std::numeric_limits<double>::infinity());
+      throw std::runtime_error(fmt::format(
+          "plane = axisymmetric: x is the distance from the axis x = 0, and a "
+          "cell of the mesh reaches to ({:.6g}, {:.6g}); move the mesh to x >= "
+          "0",
+          lowest, height));
+    }
+
     /** Of all ranks. */
     void share(const Communicator &communicator, MaterialExtremes &all)
     {
@@ -217,6 +249,8 @@ namespace nsfd
       const SceneInput &input, const CellSet set)
       : input_(&input), extent_((groups.upper() - groups.lower()).norm())
   {
+    if (input.axisymmetric)
+      check_radii(triangulation, communicator);
     auto loads =
         std::make_unique<Loads<dim>>(triangulation, groups, input, set);
     for (unsigned int b = 0; b < input.boundaries.size(); ++b)
@@ -274,7 +308,7 @@ namespace nsfd
   template <int dim>
   std::array<double, 6>
   Discretization<dim>::stress(const unsigned int body, const Point<dim> &x,
-                              const double *gradient) const
+                              const double *value, const double *gradient) const
   {
     const auto &material = input_->materials[cells_->body_class(body).material];
     if (material.rigid)
@@ -282,14 +316,19 @@ namespace nsfd
     if (material.kind == MaterialKind::finite_strain)
       return cauchy_stress<dim>(material, input_->plane_stress, gradient);
     const auto &shape = cells_->class_shape(body);
+    const auto stress_of = [&](const LinearElasticity<dim> &law) {
+      auto sigma = law.stress(gradient);
+      if (input_->axisymmetric)
+        law.add_hoop(hoop_strain(x, value, gradient, cell_size_), sigma);
+      return sigma;
+    };
     auto stress = shape.elasticity.size() == 1
-                      ? shape.elasticity[0].stress(gradient)
-                      : LinearElasticity<dim>(
+                      ? stress_of(shape.elasticity[0])
+                      : stress_of(LinearElasticity<dim>(
                             material,
                             moduli_at(shape, material,
                                       a_little_inside(x, cells_->centre(body))),
-                            input_->plane_stress)
-                            .stress(gradient);
+                            input_->plane_stress));
     if (material.initial_stress.is_given()) {
       const auto initial = InitialStress<dim>::at(material, x);
       for (unsigned int k = 0; k < stress.size(); ++k)
@@ -301,11 +340,15 @@ namespace nsfd
   template <int dim>
   std::array<double, 6>
   Discretization<dim>::viscous_stress(const unsigned int body,
+                                      const Point<dim> &x, const double *value,
                                       const double *rate) const
   {
-    return LinearElasticity<dim>::viscous(
-               input_->materials[cells_->body_class(body).material])
-        .stress(rate);
+    const auto law = LinearElasticity<dim>::viscous(
+        input_->materials[cells_->body_class(body).material]);
+    auto stress = law.stress(rate);
+    if (input_->axisymmetric)
+      law.add_hoop(hoop_strain(x, value, rate, cell_size_), stress);
+    return stress;
   }
 
   template <int dim>
@@ -354,6 +397,9 @@ namespace nsfd
       for (unsigned int i = 0; i < shape.n_nodes; ++i)
         field(cells_->place(b, shape.nodes[i]), unsigned(b),
               nodal.data() + i * dim);
+      for (std::size_t i = 0; i < shape.on_axis.size(); ++i)
+        if (shape.on_axis[i])
+          nodal[i * dim] = 0.;
       double *out = unknowns.data() + bodies().first_dof[b];
       if (!body.rigid)
         std::copy(nodal.begin(), nodal.end(), out);

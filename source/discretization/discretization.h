@@ -112,7 +112,8 @@ namespace nsfd
 
     /**
      * Interpolate at the nodes; rigid bodies take the rigid motion nearest in
-     * the norm of their mass.
+     * the norm of their mass, and nodes on the axis of a scene have no radial
+     * component.
      */
     std::vector<double> interpolate(const Field &field) const;
 
@@ -136,14 +137,18 @@ namespace nsfd
                           const Visitor &visit) const;
 
     /**
-     * Stress xx, yy, zz, xy, xz, yz from a displacement gradient at @p x, of a
-     * material without history; see bodies/cell_stresses.h for others.
+     * Stress xx, yy, zz, xy, xz, yz from displacement and its gradient at @p x,
+     * of a material without history; see bodies/cell_stresses.h for others. Of
+     * axisymmetric scenes rr, zz, hoop, rz.
      */
     std::array<double, 6> stress(unsigned int body, const dealii::Point<dim> &x,
+                                 const double *value,
                                  const double *gradient) const;
 
-    /** What a velocity gradient adds to it in a viscous material. */
+    /** What velocity and its gradient add to it in a viscous material. */
     std::array<double, 6> viscous_stress(unsigned int body,
+                                         const dealii::Point<dim> &x,
+                                         const double *value,
                                          const double *rate) const;
 
     /** Of a material; BodyShape has those of the cell of a body alone. */

@@ -1,5 +1,7 @@
 #include "face_points.h"
 
+#include "axis.h"
+#include "face_key.h"
 #include "interface_quadrature.h"
 #include "mesh/owned_cells.h"
 #include "spring_shares.h"
@@ -10,7 +12,6 @@
 #include "nsfd/scene/scene_input.h"
 #include "obstacle_of_point.h"
 
-#include <deal.II/grid/cell_id.h>
 #include <deal.II/grid/tria.h>
 
 #include <algorithm>
@@ -25,28 +26,6 @@ namespace nsfd
 
   namespace
   {
-    /** As CellId::to_string(), without a stream. */
-    void add_id(const CellId &id, std::string &text)
-    {
-      const auto children = id.get_child_indices();
-      text += std::to_string(id.get_coarse_cell_id()) + '_' +
-              std::to_string(children.size()) + ':';
-      for (const auto child : children)
-        text += std::to_string(unsigned(child));
-    }
-
-    std::uint64_t hash(const std::string &text)
-    {
-      std::uint64_t value = 1469598103934665603ull;
-      for (const unsigned char c : text)
-        value = (value ^ c) * 1099511628211ull;
-      // spread: neighbouring cells differ in a few characters only
-      value ^= value >> 31;
-      value *= 0x9e3779b97f4a7c15ull;
-      value ^= value >> 29;
-      return value;
-    }
-
     /** A face with its points, in the order in which they are found. */
     template <int dim>
     struct NewFace {
@@ -151,11 +130,11 @@ namespace nsfd
       result.origin = origin;
       const bool inside = origin.kind == PointOrigin::Kind::interface && !frame;
       text_.clear();
-      add_id(cell->id(), text_);
+      add_cell_id(cell->id(), text_);
       text_ += '/' + std::to_string(f) + '/' +
                std::to_string(int(origin.kind)) + '/' +
                std::to_string(inside ? 0 : origin.block);
-      result.face.key = hash(text_);
+      result.face.key = hash_of(text_);
       const Point<dim> centre = geometry.centre();
       for (unsigned int c = 0; c < dim; ++c)
         result.face.centre[c] = centre[c];
@@ -175,7 +154,8 @@ namespace nsfd
         for (const auto &axis : axes)
           for (unsigned int c = 0; c < dim; ++c)
             frames_.push_back(axis[c]);
-        points.weight.push_back(measure * quadrature.weight(q));
+        points.weight.push_back(measure * quadrature.weight(q) *
+                                (input_.axisymmetric ? position[0] : 1.));
       }
       add_frames(frames_);
       return result;
@@ -208,6 +188,8 @@ namespace nsfd
     void FaceCollector<dim>::add_boundary(const Cell &cell,
                                           const unsigned int f)
     {
+      if (input_.axisymmetric && is_on_axis(cell->face(f)))
+        return;
       const auto add = [&](NewFace<dim> face) {
         face.face.boundary = true;
         face.face.bodies = {{-1, body_of_[cell->active_cell_index()]}};
@@ -484,6 +466,7 @@ namespace nsfd
       result.origins.insert(result.origins.end(), face.face.count, face.origin);
       points.faces.push_back(face.face);
     }
+    points.axisymmetric = input.axisymmetric;
     set_neighbors(points);
     return result;
   }
@@ -495,6 +478,5 @@ namespace nsfd
       const std::vector<unsigned int> &, const SceneInput &, CellSet)
   NSFD_INSTANTIATE(2);
   NSFD_INSTANTIATE(3);
-#undef NSFD_INSTANTIATE
 #undef NSFD_INSTANTIATE
 } // namespace nsfd

@@ -133,7 +133,10 @@ namespace nsfd
           double gradient[dim];
           for (unsigned int d = 0; d < dim; ++d)
             gradient[d] = g[d];
-          const auto f = along<dim>(stress, gradient);
+          auto f = along<dim>(stress, gradient);
+          if (is_axisymmetric(shape)) // that along the hoops
+            f[0] += stress[2] * shape.values[q * shape.n_nodes + i] /
+                    radius_at(shape, shape.positions[q]);
           for (unsigned int c = 0; c < dim; ++c)
             forces_[(cells.first_node[b] + i) * dim + c] -= shape.JxW[q] * f[c];
         }

@@ -69,7 +69,8 @@ namespace nsfd
         quadrature = QGauss<dim - 1>(input_.discretization.degree + 2);
       for (unsigned int q = 0; q < quadrature.size(); ++q) {
         const auto xi = quadrature.point(q);
-        const Tensor<1, dim> n = face.normal(xi); // times the measure
+        const Tensor<1, dim> n = // times the measure
+            face.normal(xi) * radius_or_one(shape, face.position(xi));
         const double JxW = n.norm() * quadrature.weight(q);
         const Point<dim> x = cells.place(load.body, face.position(xi));
         const double p =
@@ -83,6 +84,21 @@ namespace nsfd
                 f * cells.element->shape_value(i, face.in_reference_cell(xi));
         }
       }
+    }
+    if (input_.axisymmetric)
+      hold_axis(cells, nodal);
+  }
+
+  /** Of what acts radially on the axis nothing moves. */
+  template <int dim>
+  void Loads<dim>::hold_axis(const Cells<dim> &cells,
+                             std::vector<double> &nodal) const
+  {
+    for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
+      const auto &on_axis = cells.class_shape(b).on_axis;
+      for (std::size_t i = 0; i < on_axis.size(); ++i)
+        if (on_axis[i])
+          nodal[(cells.first_node[b] + i) * dim] = 0.;
     }
   }
 

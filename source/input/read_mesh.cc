@@ -345,6 +345,7 @@ namespace nsfd
                     });
     const bool joined =
         scene.has_bonded_faces() && !at_nodes && !cracks_slowly &&
+        !scene.axisymmetric && // a node on the axis has no area
         !reader.has("interface points") && !file.find("Adaptivity") &&
         !(scene.dimension == 3 && has_simplices(scene) && input.degree > 1);
     input.lumped_mass =

@@ -107,13 +107,16 @@ namespace nsfd
     {
       SectionReader reader(file.top(), errors);
       scene.dimension = reader.integer("dimension", "2", 2, 3, "2 or 3");
-      if (scene.dimension == 2)
-        scene.plane_stress =
-            reader.choice("plane", "strain", {"strain", "stress"},
-                          "strain or stress") == "stress";
-      else
-        reader.refuse({"plane"}, "plane strain and plane stress are for "
-                                 "dimension = 2");
+      if (scene.dimension == 2) {
+        const std::string plane = reader.choice(
+            "plane", "strain", {"strain", "stress", "axisymmetric"},
+            "strain, stress, or axisymmetric: x is the radius, y the height, "
+            "measures are per radian");
+        scene.plane_stress = plane == "stress";
+        scene.axisymmetric = plane == "axisymmetric";
+      } else
+        reader.refuse({"plane"}, "plane strain, plane stress and axisymmetric "
+                                 "bodies are for dimension = 2");
       scene.large_motion = read_large_motion(reader);
     }
 
@@ -174,6 +177,8 @@ namespace nsfd
       read_verification(file, errors, *scene);
       read_adaptivity(file, errors, *scene);
       read_observables(file, errors, *scene);
+      if (scene->axisymmetric)
+        refuse_axisymmetric(file, errors, *scene);
       file.report_stray(errors);
       if (!errors.has_errors())
         check_memory(file, errors, *scene);

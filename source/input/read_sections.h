@@ -118,6 +118,11 @@ namespace nsfd
   void check_memory(ParameterFile &file, InputErrors &errors,
                     const SceneInput &scene);
 
+  /** Of a scene with plane = axisymmetric, what it cannot have: after all has
+      been read. */
+  void refuse_axisymmetric(ParameterFile &file, InputErrors &errors,
+                           const SceneInput &scene);
+
   /** Observable blocks. */
   void read_observables(ParameterFile &file, InputErrors &errors,
                         SceneInput &scene);

@@ -309,6 +309,15 @@ namespace nsfd
   }
 
   template <int dim>
+  void LinearElasticity<dim>::add_hoop(const double strain,
+                                       std::array<double, 6> &stress) const
+  {
+    for (unsigned int c = 0; c < 3; ++c)
+      stress[c] += lambda * strain;
+    stress[2] += 2. * mu * strain;
+  }
+
+  template <int dim>
   MaterialExtremes LinearElasticity<dim>::extremes() const
   {
     return {stiffest_, softest_, speeds_[1], speeds_[0], density_};

@@ -78,6 +78,10 @@ namespace nsfd
     /** xx, yy, zz, xy, xz, yz from a gradient [component][direction]. */
     std::array<double, 6> stress(const double *gradient) const;
 
+    /** What a strain along zz, which is 0 in the plane, adds to the @p stress
+        of an isotropic material: that along the hoops of a ring. */
+    void add_hoop(double strain, std::array<double, 6> &stress) const;
+
     /** Of the fastest and of the slowest plane wave, in any direction. */
     double pressure_wave_speed() const { return speeds_[1]; }
     double shear_wave_speed() const { return speeds_[0]; }

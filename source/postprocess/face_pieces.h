@@ -31,8 +31,8 @@ namespace nsfd
         place[k] += Q[dim + c] * points.position[i * dim + c];
       }
       pieces[k].ends = {pieces[k].position, pieces[k].position};
-      length += points.weight[i];
-      middle += points.weight[i] * place[k];
+      length += points.measure(i);
+      middle += points.measure(i) * place[k];
     }
     if (dim == 3)
       return pieces;
@@ -44,7 +44,7 @@ namespace nsfd
               });
     double begin = middle / length - length / 2.;
     for (const unsigned int k : order) {
-      const double end = begin + pieces[k].area;
+      const double end = begin + points.measure(face.first + k);
       for (unsigned int c = 0; c < dim; ++c) {
         pieces[k].ends[0][c] += (begin - place[k]) * Q[dim + c];
         pieces[k].ends[1][c] += (end - place[k]) * Q[dim + c];

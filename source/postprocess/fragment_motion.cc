@@ -199,9 +199,10 @@ namespace nsfd
       const auto of_body = discretization_.cells().shape(body.bodies[0]);
       const BodyShape<dim> &shape = *of_body;
       const Block &nodal = body.rigid ? shape.nodal_mass : body.mass;
+      constexpr unsigned int along = dim - 1; // moves on an axis, too
       for (unsigned int i = 0; i < shape.n_nodes; ++i)
         for (unsigned int j = 0; j < shape.n_nodes; ++j)
-          mass.push_back(nodal(i * dim, j * dim));
+          mass.push_back(nodal(i * dim + along, j * dim + along));
     }
   }
 
@@ -365,6 +366,7 @@ namespace nsfd
     for (const Amounts &sum : sums) {
       FragmentRecord &record = records.emplace_back();
       record.number = sum.number;
+      record.axisymmetric = discretization_.input().axisymmetric;
       record.cells = sum.cells;
       record.mass = sum.mass.value();
       record.volume = sum.volume.value();

@@ -17,7 +17,8 @@ namespace nsfd
     struct Columns {
       std::vector<std::string> driven; ///< names of the boundaries
       unsigned int dimension = 2;
-      bool absorbed = false; ///< there are absorbing sides: the last column
+      bool absorbed = false;     ///< there are absorbing sides: the last column
+      bool axisymmetric = false; ///< measures are per radian
 
       std::size_t n_reactions() const { return driven.size() * dimension; }
     };

@@ -222,7 +222,9 @@ namespace nsfd
           report.history.empty() ? 0. : report.history.back().broken_area;
       if (!report.history.empty())
         physics.add(units.broken, engineering(broken, units.area, 4),
-                    s.dimension == 3 ? "" : "area per metre of depth");
+                    s.dimension == 3 ? ""
+                    : s.axisymmetric ? "area per radian"
+                                     : "area per metre of depth");
       physics.add("fragments", count(s.fragments));
       physics.add("work of loads", energy(e.work),
                   s.pressure_work
@@ -401,7 +403,7 @@ namespace nsfd
     Figures figures(slash == std::string::npos ? ""
                                                : path.substr(0, slash + 1));
     const unsigned int dimension = report.summary.dimension;
-    const Units units(dimension);
+    const Units units(dimension, report.summary.axisymmetric);
     const Charts charts(report.history, units, report.reaction_names,
                         dimension);
 

@@ -46,7 +46,7 @@ namespace nsfd
   template <int dim>
   HistoryFile::Columns RunOutput<dim>::columns() const
   {
-    return {driven_, dim, input_.has_absorbing_sides()};
+    return {driven_, dim, input_.has_absorbing_sides(), input_.axisymmetric};
   }
 
   template <int dim>

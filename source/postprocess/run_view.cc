@@ -216,8 +216,9 @@ namespace nsfd
     for (std::size_t k = 0; k < n; ++k) {
       const unsigned int b = slots[k].body, s = slots[k].slot;
       const Sampler<dim> &sampler = mesh_.slots_of(b);
-      const double weight =
-          discretization_.cells().shape(b)->slot_normals[s].norm();
+      const auto shape = discretization_.cells().shape(b);
+      const double weight = shape->slot_normals[s].norm() *
+                            radius_or_one(*shape, shape->slot_positions[s]);
       if (!motion_.state()) {
         terms[k] = weight;
         continue;
@@ -277,12 +278,13 @@ namespace nsfd
         CellPoint point;
         const dealii::Point<dim> x =
             corner + Tensor<1, dim>(shape.positions[q]);
-        double gradient[dim * dim] = {}, rates[dim * dim] = {};
+        double value[dim] = {}, gradient[dim * dim] = {}, rates[dim * dim] = {};
         for (unsigned int i = 0; i < shape.n_nodes; ++i) {
           const double N = shape.values[q * shape.n_nodes + i];
           const auto &g = shape.gradients[q * shape.n_nodes + i];
           for (unsigned int c = 0; c < dim; ++c) {
             const std::size_t k = node + i * dim + c;
+            value[c] += N * now.displacement[k];
             point.velocity[c] += N * now.velocity[k];
             point.acceleration[c] += N * now.acceleration[k];
             for (unsigned int d = 0; d < dim; ++d) {
@@ -296,7 +298,7 @@ namespace nsfd
         point.density = material.density;
         point.gradient = wide<dim>(gradient);
         point.velocity_gradient = wide<dim>(rates);
-        point.stress = discretization_.stress(b, x, gradient);
+        point.stress = discretization_.stress(b, x, value, gradient);
         for (unsigned int c = 0; c < dim; ++c) {
           point.force[c] = material.density * input_.gravity[c];
           if (!material.body_force[c].is_zero())
@@ -342,8 +344,10 @@ namespace nsfd
         side.gradient = wide<dim>(gradient.data());
         side.velocity =
             in_space<dim>(sampler.value(slot, now.velocity.data() + node));
-        side.stress = discretization_.stress(b, sampler.position(slot, corners),
-                                             gradient.data());
+        side.stress = discretization_.stress(
+            b, sampler.position(slot, corners),
+            sampler.value(slot, now.displacement.data() + node).begin_raw(),
+            gradient.data());
         side.traction = motion_.traction(i);
         // as the displacements: in the middle of the step
         const double theta = input_.time.theta;

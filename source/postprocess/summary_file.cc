@@ -160,6 +160,8 @@ namespace nsfd
     json["failure"] =
         summary.failure.empty() ? Json(nullptr) : Json(summary.failure);
     json["dimension"] = summary.dimension;
+    if (summary.axisymmetric)
+      json["axisymmetric"] = true;
     json["steps"] = summary.steps;
     json["dofs"] = summary.dofs;
     json["cells"] = summary.cells;

@@ -14,10 +14,26 @@ namespace nsfd
     const char *const pure_columns[] = {"fragments", "active", "newton",
                                         "krylov", "residual"};
 
+    struct Measures {
+      std::string energy, force, area, mass;
+
+      explicit Measures(const HistoryFile::Columns &columns)
+          : energy("J"), force("N"), area("m^2"), mass("kg")
+      {
+        if (columns.dimension == 3)
+          return;
+        const std::string per = columns.axisymmetric ? "/rad" : "/m";
+        for (std::string *unit : {&energy, &force, &mass})
+          *unit += per;
+        area = columns.axisymmetric ? "m^2/rad" : "m";
+      }
+    };
+
     Json history_units(const HistoryFile::Columns &columns,
-                       const std::string &energy)
+                       const Measures &measures)
     {
       const unsigned int dimension = columns.dimension;
+      const std::string &energy = measures.energy;
       Json units = {{"step", ""}, {"time", "s"}, {"time_step", "s"}};
       for (const char *name : energies)
         units[name] = energy;
@@ -26,18 +42,18 @@ namespace nsfd
           units[name] = energy;
       units["work"] = energy;
       units["ledger_defect"] = "";
-      units["broken_area"] = dimension == 2 ? "m" : "m^2";
+      units["broken_area"] = measures.area;
       for (const char *name : pure_columns)
         units[name] = "";
       for (const std::string &name : columns.driven)
         for (unsigned int c = 0; c < dimension; ++c)
-          units["reaction_" + name + '_' + "xyz"[c]] =
-              dimension == 2 ? "N/m" : "N";
+          units["reaction_" + name + '_' + "xyz"[c]] = measures.force;
       return units;
     }
 
-    Json summary_units(const unsigned int dimension, const std::string &energy)
+    Json summary_units(const Measures &measures)
     {
+      const std::string &energy = measures.energy;
       Json units = Json::object();
       for (const char *name :
            {"dimension", "steps", "dofs", "cells", "interface_points",
@@ -59,17 +75,16 @@ namespace nsfd
       for (const char *name :
            {"penetration_max", "penetration_bound", "rigid_drift_max"})
         units[name] = "m";
-      const char *const mass = dimension == 2 ? "kg/m" : "kg";
       Json &sizes = units["fragment_sizes"];
       for (const char *name : {"mean_size", "median_size", "smallest_size",
                                "largest_size", "mean_size_by_mass"})
         sizes[name] = "m";
       for (const char *name : {"total_mass", "mean_mass", "median_mass",
                                "smallest_mass", "largest_mass"})
-        sizes[name] = mass;
+        sizes[name] = measures.mass;
       sizes["largest_mass_share"] = "";
       sizes["mass_exponent"] = "";
-      sizes["surface"] = dimension == 2 ? "m" : "m^2";
+      sizes["surface"] = measures.area;
       return units;
     }
   } // namespace
@@ -77,17 +92,16 @@ namespace nsfd
   std::string units_text(const HistoryFile::Columns &columns,
                          const std::vector<ObservableRecord> &observables)
   {
-    const unsigned int dimension = columns.dimension;
-    const std::string energy = dimension == 2 ? "J/m" : "J";
+    const Measures measures(columns);
     Json json = Json::object();
-    json["history.csv"] = history_units(columns, energy);
+    json["history.csv"] = history_units(columns, measures);
     for (const ObservableRecord &record : observables) {
       Json &table = json["observables/" + record.name + ".csv"];
       table = {{"step", ""}, {"time", "s"}};
       for (const ObservedColumn &column : record.columns)
         table[column.name] = column.unit;
     }
-    json["summary.json"] = summary_units(dimension, energy);
+    json["summary.json"] = summary_units(measures);
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
   }
 } // namespace nsfd

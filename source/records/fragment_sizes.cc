@@ -75,6 +75,8 @@ namespace nsfd
 
   double FragmentRecord::size(const unsigned int dimension) const
   {
+    if (axisymmetric) // 2 pi of them are the volume
+      return std::cbrt(12. * volume);
     return dimension == 2 ? std::sqrt(4. * volume / M_PI)
                           : std::cbrt(6. * volume / M_PI);
   }

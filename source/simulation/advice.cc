@@ -83,7 +83,7 @@ namespace nsfd
               1;
       double size = 0.;
       for (unsigned int i = face.first; i < face.first + face.count; ++i)
-        size += points.weight[i];
+        size += points.measure(i);
       double &longest = families[origin.block].longest;
       longest = std::max(longest, dim == 2 ? size : std::sqrt(size));
     }
@@ -103,7 +103,7 @@ namespace nsfd
         if (origin.kind != PointOrigin::Kind::interface ||
             origin.block != block)
           continue;
-        const double share = points.weight[i] / volume;
+        const double share = points.measure(i) / volume;
         terms[i] = share;
         for (unsigned int a = 0; a < dim; ++a) {
           const double n = points.axes(i)[a], square = n * n;

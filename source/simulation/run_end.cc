@@ -15,7 +15,7 @@ namespace nsfd
   {
     std::string happened(const Summary &summary, const double broken_area)
     {
-      const Units units(summary.dimension);
+      const Units units(summary.dimension, summary.axisymmetric);
       std::string text = fmt::format(
           "{} step{} to t = {} in {}; energy at the end:", summary.steps,
           summary.steps == 1 ? "" : "s",

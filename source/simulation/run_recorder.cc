@@ -85,6 +85,7 @@ namespace nsfd
   {
     const auto &mesh = *model_.discretization;
     summary_.dimension = dim;
+    summary_.axisymmetric = mesh.input().axisymmetric;
     summary_.cells = mesh.cells().n_global;
     summary_.dofs = communicator_.sum_integer(mesh.bodies().n_dofs());
     summary_.interface_points =

@@ -59,7 +59,7 @@ namespace nsfd
       double factor = 0.; // strength^2 over toughness, relative to the law
       double measure = 0.;
       for (unsigned int i = face.first; i < face.first + face.count; ++i) {
-        measure += points.weight[i];
+        measure += points.measure(i);
         // what is broken from the start has no history
         if (state.beta[i] < 1. && state.opening_max[i] > 0.)
           factor = std::max(factor, problem.strength_factor[i] *

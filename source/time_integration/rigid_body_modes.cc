@@ -22,7 +22,8 @@ namespace nsfd
       double free = 1.; ///< the share of it that supports leave
     };
 
-    /** Translations, and rotations about @p centre. */
+    /** Translations, and rotations about @p centre; of axisymmetric scenes the
+        translation along the axis. */
     template <int dim>
     std::vector<RigidMotion<dim>>
     rigid_motions(const Discretization<dim> &discretization,
@@ -30,7 +31,8 @@ namespace nsfd
     {
       const double L = discretization.extent(); // displacements of size 1
       std::vector<RigidMotion<dim>> motions;
-      for (unsigned int c = 0; c < dim; ++c)
+      const bool rings = discretization.input().axisymmetric;
+      for (unsigned int c = rings ? 1 : 0; c < dim; ++c)
         motions.push_back(
             {fmt::format("the translation in {}", "xyz"[c]),
              discretization.interpolate(
@@ -38,6 +40,8 @@ namespace nsfd
                    for (unsigned int d = 0; d < dim; ++d)
                      value[d] = d == c;
                  })});
+      if (rings)
+        return motions;
       for (unsigned int a = 0; a < dim; ++a)
         for (unsigned int b = a + 1; b < dim; ++b)
           motions.push_back(

@@ -149,17 +149,18 @@ namespace nsfd
             const double *value, const double *gradient) {
           const double share = JxW / discretization_.cells().volume(b);
           add(b, 3, share, value, dim);
-          add(b, 9, share, stresses.visit(b, x, gradient).data(), 6);
+          add(b, 9, share, stresses.visit(b, x, value, gradient).data(), 6);
         });
     const bool is_viscous = discretization_.input().has_viscous_bodies();
     discretization_.visit_quadrature(
         discretization_.to_nodal(state.velocity),
-        [&](const unsigned int b, const dealii::Point<dim> &, const double JxW,
+        [&](const unsigned int b, const dealii::Point<dim> &x, const double JxW,
             const double *value, const double *rate) {
           const double share = JxW / discretization_.cells().volume(b);
           add(b, 6, share, value, dim);
           if (is_viscous)
-            add(b, 9, share, discretization_.viscous_stress(b, rate).data(), 6);
+            add(b, 9, share,
+                discretization_.viscous_stress(b, x, value, rate).data(), 6);
         });
     const std::vector<double> all = gather_all(communicator_, mine);
     std::vector<CellState> cells(all.size() / width);
@@ -244,7 +245,7 @@ namespace nsfd
               }
             }
             if (!velocity && case_.has_stress()) {
-              const auto sigma = stresses.visit(b, x, gradient);
+              const auto sigma = stresses.visit(b, x, value, gradient);
               const auto known = case_.stress(position, state.time);
               for (unsigned int c = 0; c < 6; ++c) {
                 terms[6 * n + b] +=

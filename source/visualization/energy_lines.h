@@ -21,14 +21,23 @@ namespace nsfd
   double sum_of(const EnergyLines &energy,
                 const std::vector<EnergyLine> &lines);
 
-  /** Units of a run: in two dimensions everything is per metre of depth. */
+  /** Units of a run: in two dimensions everything is per metre of depth, in an
+      axisymmetric one per radian. */
   struct Units {
-    explicit Units(const unsigned int dimension)
+    explicit Units(const unsigned int dimension,
+                   const bool axisymmetric = false)
         : energy(dimension == 3 ? "J" : "J/m"),
           force(dimension == 3 ? "N" : "N/m"),
           area(dimension == 3 ? "m²" : "m"), mass(dimension == 3 ? "g" : "g/m"),
           broken(dimension == 3 ? "broken area" : "broken length")
     {
+      if (!axisymmetric)
+        return;
+      energy = "J/rad";
+      force = "N/rad";
+      area = "m²/rad";
+      mass = "g/rad";
+      broken = "broken area";
     }
     std::string energy, force, area, mass, broken;
   };

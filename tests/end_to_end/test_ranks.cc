@@ -69,6 +69,7 @@ namespace end_to_end::test_ranks
         {"static_crossed", {}, {}},
         {"static_michel", {"Mesh/cells=4, 2"}, {"Mesh/cells=4, 2"}},
         {"step_load", {}, {}},
+        {"tube", {}, {}},
         {"stop", {}, {}},
         {"bar_wall_in_space", column, column, "bar_wall"},
         {"midplane_pressure",

@@ -396,7 +396,9 @@ namespace nsfd::changed_scene::test_bad_input
          "set type = rectangle\n  set notch length = 1 um",
          "the mesh `rectangle` has no notch", "set notch length"},
         {"plane_in_3d", "set dimension = 2", "set dimension = 3",
-         "plane strain and plane stress are for dimension = 2",
+         "plane strain, plane stress and axisymmetric bodies are for dimension "
+         "= "
+         "2",
          "set plane = strain"},
         {"checkpoint", "set fields every = 0.5 ns",
          "set checkpoint every = -5 min", "must not be negative",

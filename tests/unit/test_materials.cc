@@ -153,9 +153,9 @@ end
     EXPECT_NEAR(form(Operator::mass, move), 1.5, 1e-14);
     EXPECT_NEAR(form(Operator::stiffness, strain), 1.5, 1e-14);
     EXPECT_NEAR(form(Operator::stiffness, move), 0., 1e-14);
-    const double gradient[4] = {1., 0., 0., 0.};
-    const auto stress =
-        scene.discretization->stress(0, dealii::Point<2>(0.25, 0.5), gradient);
+    const double value[2] = {0., 0.}, gradient[4] = {1., 0., 0., 0.};
+    const auto stress = scene.discretization->stress(
+        0, dealii::Point<2>(0.25, 0.5), value, gradient);
     EXPECT_NEAR(stress[0], 1.25, 1e-8); // a billionth of the way inwards
     EXPECT_NEAR(scene.discretization->extremes(0).fastest, 1., 1e-14);
     EXPECT_GT(scene.discretization->extremes(0).stiffest.young, 1.5);

@@ -42,6 +42,17 @@ namespace nsfd::observables
     values.insert(values.end(), vector.begin(), vector.begin() + dimension);
   }
 
+  /** In two dimensions per metre of depth, in axisymmetric scenes per radian.
+   */
+  inline std::string force_unit(const SceneInput &scene)
+  {
+    return scene.dimension == 3 ? "N" : scene.axisymmetric ? "N/rad" : "N/m";
+  }
+  inline std::string area_unit(const SceneInput &scene)
+  {
+    return scene.dimension == 3 ? "m²" : scene.axisymmetric ? "m²/rad" : "m";
+  }
+
   inline Vector in_space(const std::vector<double> &numbers)
   {
     Vector result{};

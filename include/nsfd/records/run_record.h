@@ -47,6 +47,7 @@ namespace nsfd
     bool completed = false;
     std::string failure; ///< empty, or where and why the run stopped
     unsigned int dimension = 2;
+    bool axisymmetric = false; ///< measures are per radian
     unsigned int steps = 0;
     unsigned long long dofs = 0, cells = 0, interface_points = 0;
     double final_time = 0.;

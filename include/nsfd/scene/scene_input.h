@@ -45,6 +45,9 @@ namespace nsfd
     std::string title, description; ///< opening comment paragraph of the file
     unsigned int dimension = 2;
     bool plane_stress = false;
+    /// x is the distance r from the axis and y the height z; volumes, areas,
+    /// forces and energies are per radian: r dx dy, r ds
+    bool axisymmetric = false;
     MeshInput mesh;
     std::vector<BodyInput> bodies;
     DiscretizationInput discretization;

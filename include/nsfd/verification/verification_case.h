@@ -66,6 +66,9 @@ namespace nsfd
     /** True if provide() moves boundaries with `motion = exact`. */
     virtual bool has_motion() const { return false; }
 
+    /** True if it knows scenes with plane = axisymmetric. */
+    virtual bool is_axisymmetric() const { return false; }
+
     /** Called once, after all of the input has been read. */
     virtual void initialise(const SceneInput &) {}
 

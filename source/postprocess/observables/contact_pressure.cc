@@ -12,7 +12,8 @@ namespace nsfd
   {
   public:
     ContactPressure(SectionReader &reader, const SceneInput &scene)
-        : dimension_(scene.dimension),
+        : dimension_(scene.dimension), force_unit_(force_unit(scene)),
+          area_unit_(area_unit(scene)),
           surface_(
               read_surface(reader, scene, "an Obstacle or an Interface block"))
     {
@@ -46,10 +47,10 @@ namespace nsfd
     std::vector<ObservedColumn> columns() const override
     {
       std::vector<ObservedColumn> columns;
-      add_vector(columns, "force", dimension_ == 2 ? "N/m" : "N", dimension_);
+      add_vector(columns, "force", force_unit_, dimension_);
       columns.push_back({"peak", "Pa"});
       columns.push_back({"mean", "Pa"});
-      columns.push_back({"area", dimension_ == 2 ? "m" : "m²"});
+      columns.push_back({"area", area_unit_});
       add_vector(columns, "centre", "m", dimension_);
       return columns;
     }
@@ -117,6 +118,7 @@ namespace nsfd
 
   private:
     const unsigned int dimension_;
+    const std::string force_unit_, area_unit_;
     const NamedSurface surface_;
   };
 

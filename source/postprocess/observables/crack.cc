@@ -15,7 +15,8 @@ namespace nsfd
   public:
     Crack(SectionReader &reader, const SceneInput &scene)
         : front_(reader, scene), text_(front_.text(scene)),
-          material_(only_material(scene)), dimension_(scene.dimension)
+          material_(only_material(scene)), dimension_(scene.dimension),
+          area_unit_(area_unit(scene))
     {
       if (scene.dimension == 2)
         sections_ = reader.number_list(
@@ -27,8 +28,7 @@ namespace nsfd
 
     std::vector<ObservedColumn> columns() const override
     {
-      std::vector<ObservedColumn> columns = {
-          {"length", dimension_ == 2 ? "m" : "m²"}};
+      std::vector<ObservedColumn> columns = {{"length", area_unit_}};
       add_vector(columns, "tip", "m", dimension_);
       columns.push_back({"speed", "m/s"});
       if (material_)
@@ -78,6 +78,7 @@ namespace nsfd
     const std::string text_;
     const std::optional<RunningCrack> material_;
     const unsigned int dimension_;
+    const std::string area_unit_;
     std::vector<double> sections_;
   };
 

@@ -15,7 +15,7 @@ namespace nsfd
   {
   public:
     Reaction(SectionReader &reader, const SceneInput &scene)
-        : dimension_(scene.dimension),
+        : dimension_(scene.dimension), force_unit_(force_unit(scene)),
           surface_(read_surface(reader, scene,
                                 "a driven Boundary, an Obstacle, an Interface "
                                 "or a Contact block"))
@@ -54,7 +54,7 @@ namespace nsfd
     std::vector<ObservedColumn> columns() const override
     {
       std::vector<ObservedColumn> columns;
-      add_vector(columns, "force", dimension_ == 2 ? "N/m" : "N", dimension_);
+      add_vector(columns, "force", force_unit_, dimension_);
       return columns;
     }
 
@@ -85,6 +85,7 @@ namespace nsfd
     }
 
     const unsigned int dimension_;
+    const std::string force_unit_;
     const NamedSurface surface_;
   };
 

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "body_shape.h"
+
+#include <algorithm>
+
+// Axisymmetric scenes: x is the radius, and the axis is at x = 0.
+
+namespace nsfd
+{
+  /** A face of a triangulation that has no area: where bodies are full. */
+  template <typename Face>
+  bool is_on_axis(const Face &face)
+  {
+    double largest = 0.;
+    for (const unsigned int v : face->vertex_indices())
+      largest = std::max(largest, face->vertex(v)[0]);
+    return largest < axis_tolerance * face->measure();
+  }
+
+  /** u_r / r at @p x, on the axis du_r/dr, in cells of this size. */
+  template <int dim>
+  double hoop_strain(const dealii::Point<dim> &x, const double *value,
+                     const double *gradient, const double cell_size)
+  {
+    return x[0] > axis_tolerance * cell_size ? value[0] / x[0] : gradient[0];
+  }
+
+  /**
+   * r makes integrands one degree higher, and u_r^2 / r is no polynomial: one
+   * point more than the @p n per direction of other scenes.
+   */
+  template <int dim>
+  dealii::Quadrature<dim> ring_quadrature(const dealii::ReferenceCell &cell,
+                                          unsigned int n);
+
+  /** The only rigid one, by node and component. */
+  template <int dim>
+  Block motion_along_axis(const BodyShape<dim> &shape)
+  {
+    Block along(shape.n_nodes * dim, 1);
+    for (unsigned int i = 0; i < shape.n_nodes; ++i)
+      along(i * dim + 1, 0) = 1.;
+    return along;
+  }
+
+  /** Radial motions of nodes on the axis take part in nothing. */
+  template <int dim>
+  void hold_columns(const BodyShape<dim> &shape, Block &block)
+  {
+    for (unsigned int i = 0; i < shape.on_axis.size(); ++i)
+      for (unsigned int k = 0; shape.on_axis[i] && k < block.rows; ++k)
+        block(k, i * dim) = 0.;
+  }
+
+  /** The same of a matrix, which stays positive definite: the diagonal is
+      that of the motion along the axis, so that no frequency is higher. */
+  template <int dim>
+  void hold_unknowns(const BodyShape<dim> &shape, Block &matrix)
+  {
+    for (unsigned int i = 0; i < shape.on_axis.size(); ++i) {
+      const unsigned int held = i * dim;
+      for (unsigned int k = 0; shape.on_axis[i] && k < matrix.rows; ++k)
+        matrix(held, k) = matrix(k, held) =
+            k == held ? matrix(held + 1, held + 1) : 0.;
+    }
+  }
+} // namespace nsfd

@@ -1,0 +1,118 @@
+#include "read_sections.h"
+
+#include "nsfd/verification/verification_case.h"
+
+#include <fmt/format.h>
+
+namespace nsfd
+{
+  namespace
+  {
+    void refuse_materials(ParameterFile &file, InputErrors &errors,
+                          const SceneInput &scene)
+    {
+      const auto blocks = file.open_blocks("Material");
+      for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        const MaterialInput &material = scene.materials[m];
+        SectionReader reader(*blocks[m], errors);
+        if (material.kind == MaterialKind::small_strain &&
+            material.is_isotropic())
+          continue;
+        reader.error(
+            "model",
+            fmt::format("model = {} is not available for plane = axisymmetric, "
+                        "which has {}",
+                        material.model_name,
+                        material.rigid
+                            ? "no rigid bodies: their only motion would be "
+                              "that along the axis"
+                        : material.kind == MaterialKind::small_strain
+                            ? "isotropic bodies alone"
+                            : "linear elastic bodies alone: other laws do not "
+                              "know the strain along the hoops"),
+            "write model = linear elastic");
+      }
+    }
+
+    void refuse_discretization(ParameterFile &file, InputErrors &errors,
+                               const SceneInput &scene)
+    {
+      const DiscretizationInput &input = scene.discretization;
+      if (scene.time.scheme.at_nodes)
+        return; // the scheme is refused, and has entries of its own
+      SectionReader reader(file.open("Discretization"), errors);
+      if (input.interface_quadrature == "gauss lobatto")
+        reader.error("interface quadrature",
+                     "interface quadrature = gauss lobatto has points at the "
+                     "ends of a face, and one on the axis of plane = "
+                     "axisymmetric would have no area",
+                     "write gauss");
+      if (input.lumped_mass && input.degree > 1)
+        reader.error("mass",
+                     fmt::format("mass = lumped with degree = {}: nodes on "
+                                 "the axis of plane = axisymmetric would have "
+                                 "no mass",
+                                 input.degree),
+                     "write consistent, or degree = 1");
+    }
+
+    void refuse_observables(ParameterFile &file, InputErrors &errors,
+                            const SceneInput &scene)
+    {
+      const auto blocks = file.open_blocks("Observable");
+      for (std::size_t k = 0; k < scene.observables.size(); ++k)
+        if (scene.observables[k].type == "energy release") {
+          SectionReader reader(*blocks[k], errors);
+          reader.error("type",
+                       "type = energy release is not available for plane = "
+                       "axisymmetric: its integrals are those of the plane",
+                       "take the opening of the crack faces, type = crack, or "
+                       "leave it out");
+        }
+    }
+  } // namespace
+
+  void refuse_axisymmetric(ParameterFile &file, InputErrors &errors,
+                           const SceneInput &scene)
+  {
+    SectionReader top(file.top(), errors);
+    if (scene.large_motion)
+      top.error("motion",
+                "motion = large is not available for plane = axisymmetric: the "
+                "bodies of large motions have no strain along the hoops",
+                "write motion = small");
+    if (scene.adaptivity)
+      errors.error(file.open("Adaptivity").location(),
+                   "section `Adaptivity` is not available for plane = "
+                   "axisymmetric: what it carries from mesh to mesh is per "
+                   "metre of depth",
+                   "leave it out, and refine the mesh with `refinements`");
+    if (scene.verification && !scene.verification->is_axisymmetric()) {
+      SectionReader verification(file.open("Verification"), errors);
+      verification.error("case",
+                         "this verification case does not know plane = "
+                         "axisymmetric: its solution is that of the plane",
+                         "leave the section out");
+    }
+    SectionReader time(file.open("Time"), errors);
+    if (scene.time.scheme.at_nodes)
+      time.error("scheme",
+                 "scheme = explicit is not available for plane = axisymmetric: "
+                 "the forces of joined cells are those of the plane",
+                 "write scheme = moreau-jean");
+    if (scene.gravity[0] != 0.) {
+      SectionReader loads(file.open("Loads"), errors);
+      loads.error(
+          "gravity",
+          fmt::format("gravity = {:g}, {:g} has a part across the axis, "
+                      "and plane = axisymmetric has none",
+                      scene.gravity[0], scene.gravity[1]),
+          fmt::format("write 0, {:g}; a force along the radius is "
+                      "`body force x` of a Material",
+                      scene.gravity[1]));
+    }
+    refuse_materials(file, errors, scene);
+    refuse_discretization(file, errors, scene);
+    refuse_observables(file, errors, scene);
+  }
+} // namespace nsfd
