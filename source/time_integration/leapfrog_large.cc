@@ -127,7 +127,12 @@ namespace nsfd
       for (const auto &cluster : clusters)
         apart.insert(apart.end(), cluster.nodes.begin(), cluster.nodes.end());
       std::sort(apart.begin(), apart.end());
-      outcome = points.solve(h, last, prescribed, tolerance, groups, apart);
+      auto of_round =
+          points.solve(h, last, prescribed, tolerance, groups, apart);
+      of_round.sweeps += outcome.sweeps;
+      of_round.newton += outcome.newton;
+      of_round.problems += outcome.problems;
+      outcome = of_round;
       for (auto &cluster : clusters)
         points.solve_cluster(cluster, prescribed, tolerance, rigid, of_bodies,
                              groups, outcome);
