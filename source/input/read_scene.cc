@@ -196,12 +196,13 @@ namespace nsfd
       return entry && (value.empty() || entry->value.text() == value);
     }
 
-    /** Impacts go through with explicit steps: those of large motions are
-     * chosen with the mesh unless the scene names a scheme. */
-    bool moves_far(ParameterFile &file)
+    /** Who names no scheme leaves it to the program where motions are large,
+     * as impacts go through with explicit steps, and where no step is given. */
+    bool leaves_scheme(ParameterFile &file)
     {
-      const ParameterEntry *entry = file.top().find("motion");
-      return entry && entry->value.text() == "large";
+      const ParameterEntry *motion = file.top().find("motion");
+      return (motion && motion->value.text() == "large") ||
+             !has_entry(file, "Time", "step");
     }
 
     /** A file with what the command line says; false if it cannot be read. */
@@ -286,7 +287,7 @@ namespace nsfd
       const bool names_none = can_be_read && parsed.find("Time") &&
                               !has_entry(parsed, "Time", "scheme");
       if (can_be_read && (has_entry(parsed, "Time", "scheme", "auto") ||
-                          (names_none && moves_far(parsed))))
+                          (names_none && leaves_scheme(parsed))))
         return read_automatic(parse, name, names_none,
                               has_entry(parsed, "Time", "step"), errors);
       for (const Diagnostic &one : found.diagnostics())

@@ -149,9 +149,9 @@ namespace nsfd
     time.end = reader.number("end", "", units::time, Range::positive(), "s");
     std::vector<std::string> names = time_scheme_names();
     const std::string text = list_of(names) +
-                             "; auto, the default of motion = large: explicit "
-                             "or moreau-jean, what is predicted to come to "
-                             "`end` at less cost";
+                             "; auto, the default of motion = large and where "
+                             "no `step` is given: explicit or moreau-jean, "
+                             "what is predicted to come to `end` at less cost";
     // read_scene() reads it as one of the two
     names.push_back("auto");
     time.scheme_name = reader.choice("scheme", names.front(), names, text);

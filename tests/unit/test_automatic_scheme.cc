@@ -144,7 +144,21 @@ end
         << scene->echo;
   }
 
-  // Who names no scheme has implicit steps, and is told what others cost.
+  // Who gives neither a scheme nor a step leaves both to the program.
+  TEST(AutomaticScheme, IsTheDefaultWhereNoStepIsGiven)
+  {
+    const auto chosen = [](const std::string &time) {
+      std::string text = plate("", time);
+      text.erase(text.find("  set scheme = auto\n"),
+                 std::string("  set scheme = auto\n").size());
+      return choose_scheme(*read(text), false, Communicator(MPI_COMM_SELF))
+          .time.scheme_name;
+    };
+    EXPECT_EQ(chosen("  set end = 1 s\n"), "explicit");
+    EXPECT_EQ(chosen("  set end = 1 s\n  set theta = 0.6\n"), "moreau-jean");
+  }
+
+  // Who gives a step has implicit ones, and is told what others cost.
   TEST(AutomaticScheme, IsAdvisedWhereNoSchemeIsNamed)
   {
     const auto advice = [](const std::string &time, const bool check) {
@@ -156,9 +170,10 @@ end
       EXPECT_EQ(scene.time.scheme_name, "moreau-jean");
       return scene.scheme_choice;
     };
-    const std::string start = "moreau-jean, the default; scheme = auto would ";
-    EXPECT_EQ(advice("  set end = 10 s\n", false).find(start), 0u);
-    const std::string checked = advice("  set end = 10 s\n", true);
+    const std::string start = "moreau-jean, as `step` is given; scheme = auto ";
+    const std::string as_long = "  set end = 10 s\n  set step = 0.5 courant\n";
+    EXPECT_EQ(advice(as_long, false).find(start), 0u);
+    const std::string checked = advice(as_long, true);
     EXPECT_EQ(checked.find(start), 0u);
     EXPECT_NE(checked.find("explicit steps of"), std::string::npos);
     const std::string steps = "  set end = 20000 s\n  set step = 100 s\n";
