@@ -79,8 +79,9 @@ namespace nsfd
     std::string advice(const SceneInput &input, const bool check,
                        const Communicator &communicator)
     {
-      const std::string text = "moreau-jean, as `step` is given; scheme = auto "
-                               "would take explicit steps, which cost less here";
+      const std::string text =
+          "moreau-jean, as `step` is given; scheme = auto "
+          "would take explicit steps, which cost less here";
       if (check) {
         const Comparison found =
             compare(input, *input.alternative, communicator);
