@@ -225,19 +225,13 @@ namespace nsfd
     const auto corners = discretization_.cells().corners[body];
     const std::size_t node = discretization_.cells().first_node[body] * dim;
     const auto x = sampler.position(q, corners);
-    // of no effect in the plane
-    const auto value = [&](const std::vector<double> &nodal) {
-      return discretization_.input().axisymmetric
-                 ? sampler.value(q, &nodal[node])
-                 : dealii::Tensor<1, dim>();
-    };
     Sample result;
     result.stress = discretization_.stress(
-        body, x, value(displacement).begin_raw(),
+        body, x, sampler.value(q, &displacement[node]).begin_raw(),
         sampler.gradient(q, corners, &displacement[node]).data());
     if (discretization_.input().has_viscous_bodies()) {
       const auto viscous = discretization_.viscous_stress(
-          body, x, value(velocity).begin_raw(),
+          body, x, sampler.value(q, &velocity[node]).begin_raw(),
           sampler.gradient(q, corners, &velocity[node]).data());
       for (unsigned int c = 0; c < 6; ++c)
         result.stress[c] += viscous[c];

@@ -44,7 +44,17 @@ namespace nsfd
     return along;
   }
 
-  /** Radial motions of nodes on the axis take part in nothing. */
+  /** Radial motions of nodes on the axis take part in nothing: of a field with
+      dim values per node. */
+  template <int dim>
+  void hold_nodes(const BodyShape<dim> &shape, double *nodal)
+  {
+    for (std::size_t i = 0; i < shape.on_axis.size(); ++i)
+      if (shape.on_axis[i])
+        nodal[i * dim] = 0.;
+  }
+
+  /** The same of the columns of a block. */
   template <int dim>
   void hold_columns(const BodyShape<dim> &shape, Block &block)
   {

@@ -35,16 +35,18 @@ namespace nsfd
       return QGauss<dim>(n);
     }
 
-    /** @p volume over the largest face, the lowest height of a simplex. */
+    /** Volume over the largest face, the lowest height of a simplex: in the
+        half-plane, as set_axis() comes later. */
     template <int dim>
-    double height(const BodyShape<dim> &shape, const double volume)
+    double height(const BodyShape<dim> &shape)
     {
       double largest_face = 0.;
       for (unsigned int f = 0; f < shape.reference.n_faces(); ++f)
         largest_face = std::max(
             largest_face,
             FaceGeometry<dim>(shape.reference, shape.corners, f).measure());
-      return volume / largest_face * (shape.reference.is_simplex() ? dim : 1);
+      return shape.volume / largest_face *
+             (shape.reference.is_simplex() ? dim : 1);
     }
 
     /** Velocity = translation of the centre + rotation, lengths scaled; of
@@ -343,7 +345,7 @@ namespace nsfd
       }
     }
     shape.centre /= shape.volume;
-    shape.height = height(shape, shape.volume);
+    shape.height = height(shape);
   }
 
   template <int dim>

@@ -177,6 +177,18 @@ namespace nsfd
           lowest, height));
     }
 
+    /** Of an axisymmetric scene with that of the strain along the hoops. */
+    template <int dim>
+    std::array<double, 6>
+    stress_of(const Discretization<dim> &mesh, const LinearElasticity<dim> &law,
+              const Point<dim> &x, const double *value, const double *gradient)
+    {
+      auto stress = law.stress(gradient);
+      if (mesh.input().axisymmetric)
+        law.add_hoop(hoop_strain(x, value, gradient, mesh.cell_size()), stress);
+      return stress;
+    }
+
     /** Of all ranks. */
     void share(const Communicator &communicator, MaterialExtremes &all)
     {
@@ -316,19 +328,16 @@ namespace nsfd
     if (material.kind == MaterialKind::finite_strain)
       return cauchy_stress<dim>(material, input_->plane_stress, gradient);
     const auto &shape = cells_->class_shape(body);
-    const auto stress_of = [&](const LinearElasticity<dim> &law) {
-      auto sigma = law.stress(gradient);
-      if (input_->axisymmetric)
-        law.add_hoop(hoop_strain(x, value, gradient, cell_size_), sigma);
-      return sigma;
-    };
-    auto stress = shape.elasticity.size() == 1
-                      ? stress_of(shape.elasticity[0])
-                      : stress_of(LinearElasticity<dim>(
+    auto stress =
+        shape.elasticity.size() == 1
+            ? stress_of(*this, shape.elasticity[0], x, value, gradient)
+            : stress_of(*this,
+                        LinearElasticity<dim>(
                             material,
                             moduli_at(shape, material,
                                       a_little_inside(x, cells_->centre(body))),
-                            input_->plane_stress));
+                            input_->plane_stress),
+                        x, value, gradient);
     if (material.initial_stress.is_given()) {
       const auto initial = InitialStress<dim>::at(material, x);
       for (unsigned int k = 0; k < stress.size(); ++k)
@@ -343,12 +352,10 @@ namespace nsfd
                                       const Point<dim> &x, const double *value,
                                       const double *rate) const
   {
-    const auto law = LinearElasticity<dim>::viscous(
-        input_->materials[cells_->body_class(body).material]);
-    auto stress = law.stress(rate);
-    if (input_->axisymmetric)
-      law.add_hoop(hoop_strain(x, value, rate, cell_size_), stress);
-    return stress;
+    return stress_of(*this,
+                     LinearElasticity<dim>::viscous(
+                         input_->materials[cells_->body_class(body).material]),
+                     x, value, rate);
   }
 
   template <int dim>
@@ -397,9 +404,7 @@ namespace nsfd
       for (unsigned int i = 0; i < shape.n_nodes; ++i)
         field(cells_->place(b, shape.nodes[i]), unsigned(b),
               nodal.data() + i * dim);
-      for (std::size_t i = 0; i < shape.on_axis.size(); ++i)
-        if (shape.on_axis[i])
-          nodal[i * dim] = 0.;
+      hold_nodes(shape, nodal.data());
       double *out = unknowns.data() + bodies().first_dof[b];
       if (!body.rigid)
         std::copy(nodal.begin(), nodal.end(), out);

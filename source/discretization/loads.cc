@@ -1,5 +1,6 @@
 #include "loads.h"
 
+#include "axis.h"
 #include "mesh/owned_cells.h"
 
 #include "cell_geometry.h"
@@ -85,21 +86,9 @@ namespace nsfd
         }
       }
     }
-    if (input_.axisymmetric)
-      hold_axis(cells, nodal);
-  }
-
-  /** Of what acts radially on the axis nothing moves. */
-  template <int dim>
-  void Loads<dim>::hold_axis(const Cells<dim> &cells,
-                             std::vector<double> &nodal) const
-  {
-    for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
-      const auto &on_axis = cells.class_shape(b).on_axis;
-      for (std::size_t i = 0; i < on_axis.size(); ++i)
-        if (on_axis[i])
-          nodal[(cells.first_node[b] + i) * dim] = 0.;
-    }
+    if (input_.axisymmetric) // of what acts radially there nothing moves
+      for (std::size_t b = 0; b < cells.bodies.size(); ++b)
+        hold_nodes(cells.class_shape(b), &nodal[cells.first_node[b] * dim]);
   }
 
   template <int dim>

@@ -48,7 +48,6 @@ namespace nsfd
              std::vector<double> &nodal) const;
 
   private:
-    void hold_axis(const Cells<dim> &cells, std::vector<double> &nodal) const;
     void add_volume(const Cells<dim> &cells, double t,
                     std::vector<double> &nodal) const;
 

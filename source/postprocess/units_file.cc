@@ -1,5 +1,7 @@
 #include "units_file.h"
 
+#include "nsfd/core/per_extent.h"
+
 #include <nlohmann/json.hpp>
 
 namespace nsfd
@@ -15,18 +17,14 @@ namespace nsfd
                                         "krylov", "residual"};
 
     struct Measures {
-      std::string energy, force, area, mass;
-
       explicit Measures(const HistoryFile::Columns &columns)
-          : energy("J"), force("N"), area("m^2"), mass("kg")
+          : per(per_extent(columns.dimension, columns.axisymmetric)),
+            energy("J" + per), force("N" + per), mass("kg" + per),
+            area(area_unit("m^2", columns.dimension, columns.axisymmetric))
       {
-        if (columns.dimension == 3)
-          return;
-        const std::string per = columns.axisymmetric ? "/rad" : "/m";
-        for (std::string *unit : {&energy, &force, &mass})
-          *unit += per;
-        area = columns.axisymmetric ? "m^2/rad" : "m";
       }
+
+      std::string per, energy, force, mass, area;
     };
 
     Json history_units(const HistoryFile::Columns &columns,

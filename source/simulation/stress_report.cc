@@ -5,6 +5,7 @@
 #include "discretization/loads.h"
 #include "discretization/point_factors.h"
 #include "nsfd/cohesive_laws/law_point.h"
+#include "nsfd/core/per_extent.h"
 #include "nsfd/scene/scene_input.h"
 #include "records/engineering.h"
 
@@ -112,7 +113,8 @@ namespace nsfd
     }
 
     template <int dim>
-    std::string residual_line(const std::vector<NodeForce<dim>> &nodes)
+    std::string residual_line(const std::vector<NodeForce<dim>> &nodes,
+                              const bool axisymmetric)
     {
       double largest = 0., worst = 0., of_worst = 0.;
       std::array<double, dim> place{};
@@ -140,8 +142,8 @@ namespace nsfd
           "motion\n"
           "             change: tractions sigma_0 n on free sides, or a "
           "prescribed motion\n",
-          engineering(worst, dim == 2 ? "N/m" : "N", 4), at, worst / of_worst,
-          worst / largest);
+          engineering(worst, "N" + per_extent(dim, axisymmetric), 4), at,
+          worst / of_worst, worst / largest);
     }
 
     /** R_0 is beyond what is there to carry it. */
@@ -189,8 +191,8 @@ namespace nsfd
       text = "  stress     with cells of two sizes side by side no residual "
              "force is computed\n";
     else
-      text =
-          residual_line(forces_at_nodes(input, discretization, communicator));
+      text = residual_line(forces_at_nodes(input, discretization, communicator),
+                           input.axisymmetric);
     const auto &origins = discretization.origins();
     std::vector<unsigned long long> beyond(input.interfaces.size(), 0),
         all = beyond;

@@ -2,6 +2,8 @@
 
 #include "svg.h"
 
+#include "nsfd/core/per_extent.h"
+
 #include <string>
 #include <vector>
 
@@ -26,19 +28,17 @@ namespace nsfd
   struct Units {
     explicit Units(const unsigned int dimension,
                    const bool axisymmetric = false)
-        : energy(dimension == 3 ? "J" : "J/m"),
-          force(dimension == 3 ? "N" : "N/m"),
-          area(dimension == 3 ? "m²" : "m"), mass(dimension == 3 ? "g" : "g/m"),
-          broken(dimension == 3 ? "broken area" : "broken length")
+        : Units(per_extent(dimension, axisymmetric),
+                nsfd::area_unit("m²", dimension, axisymmetric))
     {
-      if (!axisymmetric)
-        return;
-      energy = "J/rad";
-      force = "N/rad";
-      area = "m²/rad";
-      mass = "g/rad";
-      broken = "broken area";
     }
     std::string energy, force, area, mass, broken;
+
+  private:
+    Units(const std::string &per, const std::string &of_areas)
+        : energy("J" + per), force("N" + per), area(of_areas), mass("g" + per),
+          broken(area == "m" ? "broken length" : "broken area")
+    {
+    }
   };
 } // namespace nsfd

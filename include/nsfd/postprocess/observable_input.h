@@ -1,5 +1,6 @@
 #pragma once
 
+#include "nsfd/core/per_extent.h"
 #include "nsfd/parameters/section_reader.h"
 #include "nsfd/postprocess/observable.h"
 #include "nsfd/postprocess/running_crack.h"
@@ -46,11 +47,11 @@ namespace nsfd::observables
    */
   inline std::string force_unit(const SceneInput &scene)
   {
-    return scene.dimension == 3 ? "N" : scene.axisymmetric ? "N/rad" : "N/m";
+    return "N" + per_extent(scene.dimension, scene.axisymmetric);
   }
   inline std::string area_unit(const SceneInput &scene)
   {
-    return scene.dimension == 3 ? "m²" : scene.axisymmetric ? "m²/rad" : "m";
+    return nsfd::area_unit("m²", scene.dimension, scene.axisymmetric);
   }
 
   inline Vector in_space(const std::vector<double> &numbers)
