@@ -346,6 +346,20 @@ namespace nsfd
     write_list();
   }
 
+  std::optional<std::string> writer_of(const std::string &directory)
+  {
+    const int file =
+        open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (file < 0)
+      return std::nullopt;
+    const bool locked =
+        flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    close(file);
+    if (!locked)
+      return std::nullopt;
+    return other_run(directory);
+  }
+
   bool claim_directory(const std::string &directory, const bool force)
   {
     return OutputFolder::instance().claim(directory,

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -84,6 +85,12 @@ namespace nsfd
     std::chrono::steady_clock::time_point listed_;
     std::chrono::steady_clock::duration cost_{}; ///< of the last list
   };
+
+  /**
+   * The process that has locked @p directory, in words for a message; nothing
+   * if no one writes to it, or if it cannot be locked.
+   */
+  std::optional<std::string> writer_of(const std::string &directory);
 
   /**
    * Make an output directory ours, see OutputFolder::claim: it must be empty

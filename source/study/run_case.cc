@@ -13,12 +13,16 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <numeric>
 #include <sstream>
+#include <thread>
+#include <utility>
 
 namespace nsfd
 {
@@ -186,6 +190,25 @@ namespace nsfd
       return last;
     }
 
+    /**
+     * What a study that was killed has left running needs a moment to end; its
+     * ranks, if it has several, do not know and go on to their end.
+     */
+    void wait_for_writer(const std::string &folder)
+    {
+      using namespace std::chrono_literals;
+      bool said = false;
+      for (auto waited = 0ms; !stop_was_requested(); waited += 20ms) {
+        const auto writer = writer_of(folder);
+        if (!writer)
+          return;
+        if (waited >= 2s && !std::exchange(said, true))
+          std::cerr << "note: `" + folder + "` is in use by " + *writer +
+                           ": the case waits until that has ended\n";
+        std::this_thread::sleep_for(20ms);
+      }
+    }
+
     CaseResult::Status status_of(const int code)
     {
       switch (code) {
@@ -249,6 +272,7 @@ namespace nsfd
 
     std::error_code error;
     fs::create_directories(folder, error);
+    wait_for_writer(folder);
     fs::remove(record, error); // until it is finished
     write_file_atomically(scene, one.scene);
     if (!fs::exists(folder + "/run.json", error)) // else it is no run's folder

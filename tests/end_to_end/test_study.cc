@@ -1,4 +1,5 @@
 #include "program.h"
+#include "restart.h"
 
 #include <gtest/gtest.h>
 
@@ -290,6 +291,34 @@ namespace end_to_end::test_study
                     "--vary", "Mesh/cells=[4, 1],[8, 1]", "--resume"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("taken over"), std::string::npos);
+    EXPECT_EQ(json_of(workspace)["done"], 2);
+  }
+
+  // What a study that was killed has left running holds the folder of its case.
+  TEST(Study, WaitsForWhatWritesToItsFolder)
+  {
+    const Workspace workspace;
+    ASSERT_EQ(study(workspace, {"Mesh/cells=[4, 1],[8, 1]"}).exit_code, 0);
+    const fs::path folder = workspace.path() / "s/cells=8-1";
+    fs::remove(folder / "case.json");
+    Process other({NSFD_PROGRAM, scene("mode").string(), "--output",
+                   folder.string(), "--force", "--quiet", "--set",
+                   "Mesh/cells=2048, 1"},
+                  workspace.path()); // minutes
+    ASSERT_TRUE(wait_for_rows(folder, 2));
+    Process resumed({NSFD_PROGRAM, "study", scene("mode").string(), "--output",
+                     "s", "--set", "Time/end=50 us", "--set", "Study/repeats=1",
+                     "--vary", "Mesh/cells=[4, 1],[8, 1]", "--resume"},
+                    workspace.path());
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    EXPECT_TRUE(resumed.is_running());
+    EXPECT_TRUE(other.is_running());
+    other.send(SIGKILL);
+    other.wait(10.);
+    const Outcome outcome = resumed.wait(60.);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("waits until that has ended"), std::string::npos)
+        << outcome.err;
     EXPECT_EQ(json_of(workspace)["done"], 2);
   }
 
