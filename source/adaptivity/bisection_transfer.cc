@@ -51,6 +51,7 @@ namespace nsfd
     {
       throw std::logic_error("bisected cells have no internal variables");
     }
+    void cells(const std::string &, std::vector<double> &) override {}
     void common(const std::string &name, std::vector<double> &values) override
     {
       store_.common[path(name)] = values;
@@ -97,6 +98,7 @@ namespace nsfd
                                    std::uint8_t(PointKind::bonded));
     }
     void histories(const std::string &, std::vector<double> &) override {}
+    void cells(const std::string &, std::vector<double> &) override {}
     void common(const std::string &name, std::vector<double> &values) override
     {
       values = store_.common.at(path(name));

@@ -115,6 +115,8 @@ namespace nsfd
     std::vector<BodyEnergies> all;
     const Bodies &cells = discretization_.bodies(); // with their moduli
     next.material_history.resize(old_->material_history.size());
+    next.heat.of_cells.assign(
+        discretization_.input().has_heat() ? cells.size() : 0, 0.);
     for (unsigned int b = 0; b < cells.size(); ++b) {
       BodyEnergies &result = all.emplace_back();
       const BodyClass &body = cells.classes[cells.class_of[b]];
@@ -151,6 +153,8 @@ namespace nsfd
       result.elastic += cell->energy(u, history);
       result.of_strain += losses.numerical;
       result.plastic += losses.plastic;
+      if (!next.heat.of_cells.empty())
+        next.heat.of_cells[b] = losses.plastic;
       result.viscous += losses.viscous;
     }
     return all;

@@ -58,6 +58,13 @@ namespace nsfd
   }
 
   template <int dim>
+  void CheckpointWriter<dim>::cells(const std::string &name,
+                                    std::vector<double> &values)
+  {
+    write(orders_.single_cells(), name, values);
+  }
+
+  template <int dim>
   void CheckpointWriter<dim>::common(const std::string &name,
                                      std::vector<double> &values)
   {
@@ -146,6 +153,13 @@ namespace nsfd
                                         std::vector<double> &values)
   {
     read(orders_.histories(), name, values);
+  }
+
+  template <int dim>
+  void CheckpointReader<dim>::cells(const std::string &name,
+                                    std::vector<double> &values)
+  {
+    read(orders_.single_cells(), name, values);
   }
 
   template <int dim>

@@ -28,6 +28,9 @@ namespace nsfd
     /** Of the numbers that materials keep. */
     const RankOrder &histories() const { return *histories_; }
 
+    /** Of the cells themselves. */
+    const RankOrder &single_cells() const { return *single_cells_; }
+
     /** CellId::to_binary() of all active cells, four numbers each; root. */
     std::vector<std::uint32_t> cells() const;
     /** Keys of all faces and the number of their points; root. */
@@ -49,7 +52,7 @@ namespace nsfd
 
     const Discretization<dim> &discretization_;
     const Communicator &communicator_;
-    std::unique_ptr<RankOrder> unknowns_, points_, histories_;
+    std::unique_ptr<RankOrder> unknowns_, points_, histories_, single_cells_;
     std::vector<std::uint64_t> fingerprint_;
   };
 
@@ -67,6 +70,7 @@ namespace nsfd
                 std::vector<std::uint8_t> &values) override;
     void histories(const std::string &name,
                    std::vector<double> &values) override;
+    void cells(const std::string &name, std::vector<double> &values) override;
     void common(const std::string &name, std::vector<double> &values) override;
     void on_root(const std::string &name, std::vector<double> &values) override;
     void on_root(const std::string &name, std::string &text) override;
@@ -93,6 +97,7 @@ namespace nsfd
                 std::vector<std::uint8_t> &values) override;
     void histories(const std::string &name,
                    std::vector<double> &values) override;
+    void cells(const std::string &name, std::vector<double> &values) override;
     void common(const std::string &name, std::vector<double> &values) override;
     void on_root(const std::string &name, std::vector<double> &values) override;
     void on_root(const std::string &name, std::string &text) override;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace nsfd
 {
@@ -19,6 +20,9 @@ namespace nsfd
     const auto &points = discretization.points();
     unknowns_ = order_of_cells(discretization.bodies().first_dof);
     histories_ = order_of_cells(first_histories(discretization));
+    std::vector<std::size_t> one_by_one(discretization.bodies().size() + 1);
+    std::iota(one_by_one.begin(), one_by_one.end(), std::size_t(0));
+    single_cells_ = order_of_cells(one_by_one);
     std::vector<RankOrder::Key> keys;
     for (const auto &face : points.faces)
       for (unsigned int k = 0; k < face.count; ++k)

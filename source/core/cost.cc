@@ -65,7 +65,7 @@ namespace nsfd
          "preconditioner, set-up", "preconditioner, applied",
          "sums over points", "Gauss-Seidel sweeps", "update of bodies",
          "energy ledger", "output", "W, single precision",
-         "waiting for other ranks", "motion of fragments"}};
+         "waiting for other ranks", "motion of fragments", "heat"}};
     return names[std::size_t(line)];
   }
 

@@ -26,6 +26,7 @@ namespace nsfd
     delassus_single, ///< applications of W in single precision
     messages,        ///< waiting for other ranks
     fragments,       ///< their masses, motions and sizes
+    heat,            ///< temperatures
     count
   };
 

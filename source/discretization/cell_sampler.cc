@@ -63,6 +63,16 @@ namespace nsfd
   }
 
   template <int dim>
+  double Sampler<dim>::linear_value(const unsigned int q,
+                                    const double *corners) const
+  {
+    double value = 0.;
+    for (unsigned int v = 0; v < n_corners_; ++v)
+      value += linear_values_[q * n_corners_ + v] * corners[v];
+    return value;
+  }
+
+  template <int dim>
   Tensor<1, dim> Sampler<dim>::value(const unsigned int q,
                                      const double *u) const
   {

@@ -45,6 +45,9 @@ namespace nsfd
     /** @p u: nodal values of the body. */
     dealii::Tensor<1, dim> value(unsigned int q, const double *u) const;
 
+    /** Of what is linear between the corners, one value each. */
+    double linear_value(unsigned int q, const double *corners) const;
+
     /** [component][direction] */
     std::array<double, dim * dim>
     gradient(unsigned int q, const std::vector<dealii::Point<dim>> &corners,

@@ -62,6 +62,9 @@ namespace nsfd
                                   history_dependent_model(scene)),
                       "remove the section Adaptivity, or write model = linear "
                       "elastic");
+      refuse(scene.has_heat(),
+             "new cells would not know their temperatures yet",
+             "remove the section Adaptivity, or the heat capacities");
       refuse(scene.has_initial_stress() &&
                  std::any_of(scene.interfaces.begin(), scene.interfaces.end(),
                              [](const InterfaceInput &block) {

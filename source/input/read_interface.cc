@@ -181,6 +181,26 @@ namespace nsfd
                         units::none, {0., 1., false, true}, threshold_text);
     }
 
+    /** Of faces that part, in a scene with heat. */
+    void read_heat(SectionReader &reader, const SceneInput &scene,
+                   InterfaceInput &input)
+    {
+      const std::string conductance = "contact conductance",
+                        gap = "gap conductivity",
+                        text = "W/(m^2 K), of parted faces that are closed; "
+                               "default: they conduct as the bodies do";
+      if (!scene.has_heat()) {
+        reader.refuse({conductance, gap}, "no material has a heat capacity");
+        return;
+      }
+      if (reader.optional(conductance, text))
+        input.heat.conductance = reader.number(
+            conductance, "", units::conductance, Range::positive(), text);
+      input.heat.gap_conductivity = reader.number(
+          gap, "0", units::conductivity, Range::non_negative(),
+          "W/(m K), of what fills parted faces that are open; 0: nothing");
+    }
+
     /** Where a law that heals is not known. */
     void check_healing(SectionReader &reader, const InterfaceInput &input,
                        const SceneInput &scene)
@@ -228,7 +248,8 @@ namespace nsfd
             fmt::format("faces of the law `{}` never open", input.law_name);
         reader.refuse({"friction", "restitution", "friction exponent", "broken",
                        "intact faces", "crack pressure", "pressure threshold",
-                       "dilatancy", "dilatancy saturation", "wear coefficient"},
+                       "dilatancy", "dilatancy saturation", "wear coefficient",
+                       "contact conductance", "gap conductivity"},
                       reason);
         reader.refuse(cohesive_entries(), reason);
         refuse_initial_stress(reader, reason);
@@ -238,6 +259,7 @@ namespace nsfd
       if (input.law_name == "contact") {
         read_contact(reader, input);
         read_crack_pressure(reader, input);
+        read_heat(reader, scene, input);
         const std::string reason =
             "faces of the law `contact` carry no cohesion";
         reader.refuse({"friction exponent", "broken", "intact faces"}, reason);
@@ -256,6 +278,7 @@ namespace nsfd
       read_damage_start(reader, input);
       input.intact = read_intact_faces(reader, input, scene);
       read_crack_pressure(reader, input);
+      read_heat(reader, scene, input);
       return input;
     }
   } // namespace

@@ -101,6 +101,57 @@ namespace nsfd
                                 material.model_name));
     }
 
+    /** Only the scenes that warm pay for temperatures. */
+    void read_heat(SectionReader &reader, const SceneInput &scene,
+                   MaterialInput &material)
+    {
+      const std::string capacity = "heat capacity",
+                        text = "J/(kg K): what is dissipated warms the body; "
+                               "for all materials or none";
+      const std::vector<std::string> others = {"conductivity",
+                                               "initial temperature"};
+      const std::string share = "plastic heat share";
+      if (!reader.optional(capacity, text)) {
+        reader.refuse(others, "there is no `heat capacity`");
+        reader.refuse({share}, "there is no `heat capacity`");
+        return;
+      }
+      HeatOfMaterial &heat = material.heat.emplace();
+      heat.capacity = reader.number(capacity, "", units::heat_capacity,
+                                    Range::positive(), text);
+      heat.conductivity =
+          reader.number(others[0], "0", units::conductivity,
+                        Range::non_negative(), "W/(m K); 0: adiabatic");
+      heat.initial = read_initial_expression(
+          reader, others[1], "293.15 K", units::temperature, "K, of x, y, z");
+      if (material.kind == MaterialKind::history_dependent)
+        heat.plastic_share =
+            reader.number(share, "1", units::none, Range::closed(0., 1.),
+                          "of the plastic work: what becomes heat");
+      else
+        reader.refuse({share}, "the material does not flow");
+      if (scene.large_motion)
+        reader.error(capacity, "motion = large has no temperatures yet",
+                     "remove it, or write motion = small");
+    }
+
+    /** Every cell has a temperature, or none has. */
+    void check_heat(const std::vector<ParameterSection *> &blocks,
+                    InputErrors &errors, const SceneInput &scene)
+    {
+      std::string with;
+      for (const MaterialInput &material : scene.materials)
+        if (material.heat)
+          with = material.name;
+      for (std::size_t m = 0; !with.empty() && m < blocks.size(); ++m)
+        if (!scene.materials[m].heat)
+          errors.error(blocks[m]->location(),
+                       fmt::format("material {} has no `heat capacity`, and "
+                                   "material {} has",
+                                   scene.materials[m].name, with),
+                       "give both, or none");
+    }
+
     /** Their cells are stepped by other forces than those of the others. */
     void refuse_with_history(const std::vector<ParameterSection *> &blocks,
                              InputErrors &errors, const SceneInput &scene)
@@ -181,11 +232,14 @@ namespace nsfd
       material.name = block->block_name();
       material.where = read_where(reader, "all", WhereUse::cells, scene,
                                   "all, a group or an expression of x, y, z");
-      if (read_model(reader, scene, grains, material))
+      if (read_model(reader, scene, grains, material)) {
         read_fields(reader, scene, material);
+        read_heat(reader, scene, material);
+      }
       scene.materials.push_back(material);
     }
     refuse_with_history(blocks, errors, scene);
+    check_heat(blocks, errors, scene);
     if (scene.materials.empty())
       errors.error(file.location(), "the scene has no material",
                    "add for example: subsection Material: bulk");

@@ -202,6 +202,17 @@ namespace nsfd
 
   template <int dim>
   std::vector<double>
+  GhostLayer<dim>::own_cells(const std::vector<double> &all) const
+  {
+    std::vector<double> own;
+    own.reserve(cell_.size());
+    for (const std::size_t cell : cell_)
+      own.push_back(all[cell]);
+    return own;
+  }
+
+  template <int dim>
+  std::vector<double>
   GhostLayer<dim>::spread_histories(const std::vector<double> &own) const
   {
     if (!own_.input().has_history())

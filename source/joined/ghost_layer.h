@@ -54,6 +54,8 @@ namespace nsfd
     /** Unknowns: dim values per node of a cell. */
     std::vector<double> spread_unknowns(const std::vector<double> &own) const;
     std::vector<double> own_unknowns(const std::vector<double> &all) const;
+    /** One value per cell. */
+    std::vector<double> own_cells(const std::vector<double> &all) const;
     /** State::material_history. */
     std::vector<double> spread_histories(const std::vector<double> &own) const;
     std::vector<double> own_histories(const std::vector<double> &all) const;

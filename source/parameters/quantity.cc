@@ -26,6 +26,8 @@ namespace nsfd
         {"N", {{1, 1, -2}, 0, 1.}, true},
         {"J", {{1, 2, -2}, 0, 1.}, true},
         {"Hz", {{0, 0, -1}, 0, 1.}, true},
+        {"W", {{1, 2, -3}, 0, 1.}, true},
+        {"K", {units::temperature, 0, 1.}, true},
         {"min", {units::time, 0, 60.}, false},
         {"h", {units::time, 0, 3600.}, false},
     };
@@ -87,6 +89,10 @@ namespace nsfd
         {units::inertia, "a moment of inertia", "0.1 kg*m^2"},
         {units::inertia_per_length, "a moment of inertia per length",
          "0.1 kg*m^2/m"},
+        {units::temperature, "a temperature", "293 K"},
+        {units::heat_capacity, "an energy per mass and kelvin", "500 J/kg/K"},
+        {units::conductivity, "a thermal conductivity", "50 W/m/K"},
+        {units::conductance, "a power per area and kelvin", "10 kW/m^2/K"},
         {{1, 1, -2}, "a force", ""},
         {{1, 2, -2}, "an energy", ""},
         {{0, 0, -1}, "a frequency", "1 1/s"},
@@ -98,14 +104,15 @@ namespace nsfd
   bool operator==(const Unit &a, const Unit &b)
   {
     return a.kilogram == b.kilogram && a.metre == b.metre &&
-           a.second == b.second;
+           a.second == b.second && a.kelvin == b.kelvin;
   }
 
   bool operator!=(const Unit &a, const Unit &b) { return !(a == b); }
 
   Unit operator*(const Unit &a, const Unit &b)
   {
-    return {a.kilogram + b.kilogram, a.metre + b.metre, a.second + b.second};
+    return {a.kilogram + b.kilogram, a.metre + b.metre, a.second + b.second,
+            a.kelvin + b.kelvin};
   }
 
   Unit operator/(const Unit &a, const Unit &b) { return a * power(b, -1); }
@@ -113,7 +120,7 @@ namespace nsfd
   Unit power(const Unit &base, const int exponent)
   {
     return {base.kilogram * exponent, base.metre * exponent,
-            base.second * exponent};
+            base.second * exponent, base.kelvin * exponent};
   }
 
   UnitScale operator*(const UnitScale &a, const UnitScale &b)
@@ -184,6 +191,7 @@ namespace nsfd
     append("kg", unit.kilogram);
     append("m", unit.metre);
     append("s", unit.second);
+    append("K", unit.kelvin);
     return result;
   }
 

@@ -319,6 +319,9 @@ namespace nsfd
     CellStresses<dim> stresses(discretization, state);
     if (stresses.any_memory())
       grid.point_data.push_back({"equivalent_plastic_strain", 1, {}});
+    const bool warm = !state.heat.temperature.empty();
+    if (warm)
+      grid.point_data.push_back({"temperature", 1, {}, "K"});
     const std::size_t n = discretization.bodies().size(),
                       n_cells = n * lattice.cells.size();
     grid.reserve(n * lattice.points.size(), n_cells,
@@ -342,6 +345,9 @@ namespace nsfd
         grid.point_data[3].values.push_back(von_mises(stress));
         if (stresses.any_memory())
           grid.point_data[4].values.push_back(flow);
+        if (warm)
+          grid.point_data.back().values.push_back(sampler.linear_value(
+              q, &state.heat.temperature[b * corners.size()]));
       }
       for (auto cell : lattice.cells) {
         for (auto &corner : cell)

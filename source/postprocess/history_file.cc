@@ -18,6 +18,8 @@ namespace nsfd
           result.push_back("reaction_" + name + '_' + "xyz"[d]);
       if (columns.absorbed)
         result.push_back("absorbed");
+      if (columns.heat)
+        result.insert(result.end(), {"heat", "heat_stored", "hottest"});
       return result;
     }
   } // namespace
@@ -28,13 +30,15 @@ namespace nsfd
   }
 
   HistoryFile::HistoryFile(const std::string &path, const Columns &columns)
-      : absorbed_(columns.absorbed), file_(path, names(columns))
+      : absorbed_(columns.absorbed), heat_(columns.heat),
+        file_(path, names(columns))
   {
   }
 
   HistoryFile::HistoryFile(const std::string &path, const Columns &columns,
                            const std::uintmax_t n_bytes)
-      : absorbed_(columns.absorbed), file_(path, names(columns), n_bytes)
+      : absorbed_(columns.absorbed), heat_(columns.heat),
+        file_(path, names(columns), n_bytes)
   {
   }
 
@@ -64,6 +68,10 @@ namespace nsfd
     line.insert(line.end(), row.reactions.begin(), row.reactions.end());
     if (absorbed_)
       line.push_back(e.absorbed);
+    if (heat_) {
+      const HeatRecord heat = row.heat.value_or(HeatRecord());
+      line.insert(line.end(), {heat.made, heat.stored, heat.hottest});
+    }
     file_.write(line);
   }
 
@@ -92,11 +100,13 @@ namespace nsfd
       row.newton = unsigned(x[17]);
       row.krylov = unsigned(x[18]);
       row.residual = x[19];
-      const auto reactions = x.begin() + long(n_fixed),
-                 end = reactions + long(columns.n_reactions());
-      row.reactions.assign(reactions, end);
+      const auto reactions = x.begin() + long(n_fixed);
+      auto next = reactions + long(columns.n_reactions());
+      row.reactions.assign(reactions, next);
       if (columns.absorbed)
-        e.absorbed = *end;
+        e.absorbed = *next++;
+      if (columns.heat)
+        row.heat = HeatRecord{next[0], next[1], next[2]};
     }
     return rows;
   }

@@ -19,6 +19,7 @@ namespace nsfd
       unsigned int dimension = 2;
       bool absorbed = false;     ///< there are absorbing sides: the last column
       bool axisymmetric = false; ///< measures are per radian
+      bool heat = false;         ///< the last columns of all
 
       std::size_t n_reactions() const { return driven.size() * dimension; }
     };
@@ -49,7 +50,7 @@ namespace nsfd
     static std::string header(const Columns &columns);
 
   private:
-    const bool absorbed_;
+    const bool absorbed_, heat_;
     TableFile file_;
   };
 } // namespace nsfd

@@ -46,7 +46,8 @@ namespace nsfd
   template <int dim>
   HistoryFile::Columns RunOutput<dim>::columns() const
   {
-    return {driven_, dim, input_.has_absorbing_sides(), input_.axisymmetric};
+    return {driven_, dim, input_.has_absorbing_sides(), input_.axisymmetric,
+            input_.has_heat()};
   }
 
   template <int dim>

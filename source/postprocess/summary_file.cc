@@ -183,6 +183,10 @@ namespace nsfd
     json["work"] = number(e.work);
     if (summary.pressure_work)
       json["crack_pressure_work"] = number(*summary.pressure_work);
+    if (summary.heat)
+      json["heat"] = {{"made", number(summary.heat->made)},
+                      {"stored", number(summary.heat->stored)},
+                      {"hottest", number(summary.heat->hottest)}};
     if (summary.viscous_traction_max)
       json["viscous_traction_max"] = number(*summary.viscous_traction_max);
     json["ledger_defect_max"] = number(summary.balance_residual_max);

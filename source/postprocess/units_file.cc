@@ -46,6 +46,10 @@ namespace nsfd
       for (const std::string &name : columns.driven)
         for (unsigned int c = 0; c < dimension; ++c)
           units["reaction_" + name + '_' + "xyz"[c]] = measures.force;
+      if (columns.heat) {
+        units["heat"] = units["heat_stored"] = energy;
+        units["hottest"] = "K";
+      }
       return units;
     }
 
@@ -69,6 +73,7 @@ namespace nsfd
       for (const char *name :
            {"work", "crack_pressure_work", "positive_friction_work"})
         units[name] = energy;
+      units["heat"] = {{"made", energy}, {"stored", energy}, {"hottest", "K"}};
       units["viscous_traction_max"] = "Pa";
       for (const char *name :
            {"penetration_max", "penetration_bound", "rigid_drift_max"})

@@ -145,6 +145,16 @@ namespace nsfd
       return line;
     }
 
+    /** The first law: what was dissipated is in the bodies. */
+    Line heat_of(const RunFacts &facts)
+    {
+      Line line = line_of("heat residual", *facts.heat_residual, largest_defect,
+                          within(*facts.heat_residual <= largest_defect));
+      if (line.verdict == Verdict::bad)
+        line.remark = "the bodies have not the heat that was made in them";
+      return line;
+    }
+
     /** A balance closes whatever its lines do: each has a bound of its own. */
     void add_given(const RunFacts &facts, std::vector<Line> &lines)
     {
@@ -316,6 +326,8 @@ namespace nsfd
     add_residuals(facts, lines);
     lines.push_back(penetration_of(facts));
     lines.push_back(defect_of(facts));
+    if (facts.heat_residual)
+      lines.push_back(heat_of(facts));
     add_given(facts, lines);
     add_uniqueness(facts, lines);
     lines.push_back(zone_of(facts));

@@ -41,6 +41,8 @@ namespace nsfd
     double residual = 0., tolerance = 0.; ///< worst one, of the steps in time
     double imbalance = 0., static_tolerance = 0.; ///< the same of equilibria
     double balance_residual = 0.;
+    /// |stored - made| over the heat that has moved; nothing: there is none
+    std::optional<double> heat_residual;
     std::vector<GivenEnergy> given; ///< by the lines that must not
     double penetration = 0., penetration_bound = 0.; ///< largest ones, m
     double penetration_excess = 0.; ///< of a point above its own bound, m

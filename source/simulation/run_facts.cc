@@ -196,6 +196,11 @@ namespace nsfd
     if (input.statics)
       facts.static_tolerance = input.statics->tolerance;
     facts.balance_residual = summary.balance_residual_max;
+    if (summary.heat)
+      facts.heat_residual =
+          state.heat.moved > 0.
+              ? std::abs(state.heat.stored - state.heat.made) / state.heat.moved
+              : 0.;
     const EnergyLines &e = summary.energy;
     if (!std::isfinite(e.kinetic + e.elastic + e.cohesive + e.numerical))
       facts.balance_residual = std::numeric_limits<double>::quiet_NaN();

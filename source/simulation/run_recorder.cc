@@ -32,6 +32,17 @@ namespace nsfd
     }
   } // namespace
 
+  namespace
+  {
+    std::optional<HeatRecord> heat_of(const SceneInput &input,
+                                      const State &state, const double hottest)
+    {
+      if (!input.has_heat())
+        return std::nullopt;
+      return HeatRecord{state.heat.made, state.heat.stored, hottest};
+    }
+  } // namespace
+
   template <int dim>
   RunRecorder<dim>::RunRecorder(const SceneInput &input,
                                 const RunOptions &options,
@@ -138,6 +149,7 @@ namespace nsfd
     row.broken_area = state.broken_area;
     row.fragments = fragments_->count();
     row.reactions = steps_.integrator().reactions();
+    row.heat = heat_of(input_, state, state.heat.hottest);
     output_->start(row);
     say(extremes_->start(state));
     observe(state, nullptr, row);
@@ -170,6 +182,7 @@ namespace nsfd
     row.krylov = report.solver.krylov;
     row.residual = report.solver.residual;
     row.reactions = steps_.integrator().reactions();
+    row.heat = heat_of(input_, state, state.heat.hottest);
     output_->record(row);
     if (is_shown)
       say(extremes_->observe(previous, state));
@@ -257,6 +270,7 @@ namespace nsfd
     if (!state.pressure.empty())
       s.pressure_work = state.pressure_work;
     s.viscous_traction_max = state.viscous_traction;
+    s.heat = heat_of(input_, state, state.heat.hottest_of_run);
     s.rigid_drift_max = state.rigid_drift;
     s.fragments = fragments_->count();
     s.penetration_bound = extremes_->penetration_bound();

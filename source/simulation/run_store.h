@@ -5,6 +5,7 @@
 #include "run_recorder.h"
 
 #include "checkpoint/checkpoints.h"
+#include "heat/body_heat.h"
 
 namespace nsfd
 {
@@ -27,6 +28,7 @@ namespace nsfd
     CrackEvents<dim> events;
     RunRecorder<dim> recorder;
     std::unique_ptr<MeshChanges<dim>> adaptive; ///< or null
+    std::unique_ptr<BodyHeat<dim>> heat;        ///< or null
     State state;
   };
 

@@ -49,6 +49,7 @@ namespace nsfd
       bool is_over();
       bool advance(State &next, std::string &failure);
       bool change_mesh(State &next);
+      void warm(State &before);
       void accept(State &next, const StepReport &report, double time_step);
       int stop(bool between_steps);
       int fail(const std::string &failure);
@@ -217,6 +218,11 @@ namespace nsfd
             found
                 ? parts_.adaptive->restore(stored_cells(*found, communicator_))
                 : parts_.adaptive->start();
+      if (input_.has_heat()) {
+        parts_.heat = std::make_unique<BodyHeat<dim>>(*model_.discretization,
+                                                      communicator_);
+        parts_.heat->start(state_);
+      }
       parts_.events.start(*model_.discretization, communicator_, state_);
       return !input_.mesh_changes() || recorder_.find_observables();
     }
@@ -340,6 +346,19 @@ namespace nsfd
       return true;
     }
 
+    /** @p before: the state before the step, which has the temperatures. */
+    template <int dim>
+    void Simulation<dim>::warm(State &before)
+    {
+      if (!parts_.heat)
+        return;
+      const Charge charge(Cost::heat);
+      std::swap(state_.heat.of_points, before.heat.of_points);
+      std::swap(state_.heat.of_cells, before.heat.of_cells);
+      std::swap(state_.heat, before.heat);
+      parts_.heat->accept(state_, [this] { steps_.integrator().show(state_); });
+    }
+
     template <int dim>
     void Simulation<dim>::accept(State &next, const StepReport &report,
                                  const double h)
@@ -349,6 +368,7 @@ namespace nsfd
       std::swap(state_, next);
       if (steps_.integrator().keeps_motion())
         swap_motion(state_, next); // there is one of it
+      warm(next);
       const auto news =
           parts_.events.accept(next, steps_.integrator(),
                                *model_.discretization, communicator_, state_);
@@ -407,6 +427,8 @@ namespace nsfd
       if (parts_.adaptive)
         parts_.adaptive->fill_counters(counters);
       parts_.events.fill_counters(state_, counters);
+      if (parts_.heat)
+        counters["heat_iterations"] = double(parts_.heat->iterations());
       certified_ = recorder_.finish(state_, failure, store_->n_failed(),
                                     std::move(counters));
     }

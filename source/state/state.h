@@ -23,6 +23,19 @@ namespace nsfd
     std::array<double, 3> position{}, normal{}, impulse{};
   };
 
+  /** What is dissipated warms the bodies; empty where a scene has no heat. */
+  struct HeatState {
+    std::vector<double> temperature; ///< K, by corner of the cells
+    double made = 0.;   ///< by friction, damage and flow since t = 0, J
+    double stored = 0.; ///< in the bodies since t = 0, J
+    double moved = 0.;  ///< sum of its parts, whatever their sign: the most, J
+    double hottest = 0., hottest_of_run = 0.; ///< K
+    double conducted_until = 0.;              ///< s
+    /// of the last step, J: by point, and by cell the plastic work; a
+    /// checkpoint has none
+    std::vector<double> of_points, of_cells;
+  };
+
   /**
    * Everything that changes in time, as plain values: copied and swapped.
    * Bodies: q, v by unknown. Points: dim components in the local frame.
@@ -86,5 +99,6 @@ namespace nsfd
     /// what history-dependent materials keep, cell by cell and point by point
     /// of the cell quadrature, see bodies/history_cell.h; empty without such
     std::vector<double> material_history;
+    HeatState heat;
   };
 } // namespace nsfd

@@ -202,7 +202,7 @@ namespace nsfd
         const auto writer = writer_of(folder);
         if (!writer)
           return;
-        if (waited >= 2s && !std::exchange(said, true))
+        if (waited >= 1s && !std::exchange(said, true))
           std::cerr << "note: `" + folder + "` is in use by " + *writer +
                            ": the case waits until that has ended\n";
         std::this_thread::sleep_for(20ms);

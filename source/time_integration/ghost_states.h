@@ -47,6 +47,10 @@ namespace nsfd
     {
       archive_.histories(path(name), values);
     }
+    void cells(const std::string &name, std::vector<double> &values) override
+    {
+      archive_.cells(path(name), values);
+    }
     void common(const std::string &name, std::vector<double> &values) override
     {
       archive_.common(path(name), values);

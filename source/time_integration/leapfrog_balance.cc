@@ -266,6 +266,7 @@ namespace nsfd
         communicator.any(!springs) ? n_rows : n_rows_of_springs;
     terms_.assign(rows * n, 0.);
     energies_.resize(n);
+    const bool warms = discretization_.input().has_heat();
     for (std::size_t k = 0; k < n; ++k) {
       const unsigned int active = balance.active;
       fetch(springs_, k);
@@ -273,6 +274,10 @@ namespace nsfd
         account_spring(moved_[k], k, balance);
       else
         account_point(moved_[k], k, balance);
+      if (warms && !springs_[k])
+        balance.heat.emplace_back(chains_.point[moved_[k]],
+                                  terms_[damage * n + k] +
+                                      terms_[friction * n + k]);
       if (counts_[k])
         continue;
       balance.active = active;

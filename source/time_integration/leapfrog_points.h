@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 namespace nsfd
@@ -123,6 +124,8 @@ namespace nsfd
       unsigned int active = 0;
       bool beyond_unique = false;
       LineChanges changes; ///< of friction, damage, impact, numerical
+      /// of a scene with heat: points of the mesh, J by damage and friction
+      std::vector<std::pair<unsigned int, double>> heat;
     };
     /** Balances the step; what the points keep does not change. Collective. */
     Balance account(const Communicator &communicator);

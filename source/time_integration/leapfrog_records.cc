@@ -3,11 +3,13 @@
 #include "ghost_states.h"
 
 #include "discretization/loads.h"
+#include "joined/finite_forces.h"
 #include "nsfd/core/archive.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 // What Leapfrog accounts for in a step, shows and keeps.
 
@@ -29,6 +31,33 @@ namespace nsfd
     if (last == 0.)
       energies.viscous += h / 8. * (a + c);
   }
+
+  namespace
+  {
+    /** What was dissipated at the @p points (of all that are stepped), and in
+        the cells on their way to the last forces. */
+    template <int dim>
+    void set_heat(const std::vector<std::pair<unsigned int, double>> &points,
+                  const CellForces<dim> &forces,
+                  const LeapfrogGhosts<dim> &ghosts, HeatState &heat)
+    {
+      const auto &own = ghosts.own_points();
+      std::fill(heat.of_points.begin(), heat.of_points.end(), 0.);
+      for (const auto &[point, energy] : points) {
+        const unsigned int at = own.empty() ? point : own[point];
+        if (at != unsigned(-1))
+          heat.of_points[at] += energy;
+      }
+      const auto *flowing = dynamic_cast<const FiniteForces<dim> *>(&forces);
+      heat.of_cells.clear();
+      if (!flowing || flowing->taken().empty())
+        return;
+      heat.of_cells = flowing->taken(); // the viscous part behind the plastic
+      heat.of_cells.resize(heat.of_cells.size() / 2);
+      if (const auto *layer = ghosts.layer())
+        heat.of_cells = layer->own_cells(heat.of_cells);
+    }
+  } // namespace
 
   template <int dim>
   void Leapfrog<dim>::account(const State &old, const double h,
@@ -67,6 +96,10 @@ namespace nsfd
                               (large_ ? large_->widen(balance.way) : 0.),
                           bodies.excess) -
                      1e-12 * discretization_.extent());
+    if (input_.has_heat()) {
+      next.heat.of_points.resize((own_ ? *own_ : all_).n_points);
+      set_heat(balance.heat, *forces_, ghosts_, next.heat);
+    }
     next.rigid_drift = old.rigid_drift;
     next.viscous_traction = old.viscous_traction;
     next.pressure_work = old.pressure_work + bodies.pressure_work;

@@ -53,6 +53,10 @@ namespace nsfd
     archive.bodies("last_way", s.last_way);
     archive.common("obstacle_shift", s.obstacle_shift);
     archive.histories("material_history", s.material_history);
+    archive.cells("temperature", s.heat.temperature);
+    archive.numbers("heat", s.heat.made, s.heat.stored, s.heat.moved,
+                    s.heat.hottest, s.heat.hottest_of_run,
+                    s.heat.conducted_until);
     archive.common("surface_impulse", s.surface_impulse);
     archive.common("surface_slip", s.surface_slip);
     archive.common("surface_worn", s.surface_worn);

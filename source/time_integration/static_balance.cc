@@ -30,11 +30,12 @@ namespace nsfd
     public:
       PointTerms(const OneStepProblem<dim> &problem,
                  const std::vector<LocalSolution<dim>> &solutions,
-                 const State &old, State &next)
+                 const bool has_heat, const State &old, State &next)
           : terms(n_rows * problem.n_owned, 0.), problem_(problem),
             solutions_(solutions), old_(old), next_(next)
       {
         carry_history(old, next);
+        next.heat.of_points.assign(has_heat ? problem.n_points : 0, 0.);
       }
 
       void add_motion(std::size_t i);
@@ -52,6 +53,9 @@ namespace nsfd
 
       void put(const PointRow row, const std::size_t i, const double value)
       {
+        auto &heat = next_.heat.of_points;
+        if (!heat.empty() && (row == damage || row == friction))
+          heat[i] += value;
         if (i < problem_.n_owned)
           terms[row * problem_.n_owned + i] += value;
       }
@@ -217,7 +221,8 @@ namespace nsfd
   {
     const auto &communicator = delassus_.communicator();
     const auto &problem = relaxation.load_step();
-    PointTerms<dim> points(problem, relaxation.solutions(), old, next);
+    PointTerms<dim> points(problem, relaxation.solutions(),
+                           discretization_.input().has_heat(), old, next);
     for (std::size_t i = 0; i < problem.n_points; ++i) {
       if (has_pressure_)
         points.add_pressure(i);

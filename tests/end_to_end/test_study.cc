@@ -310,7 +310,7 @@ namespace end_to_end::test_study
                      "s", "--set", "Time/end=50 us", "--set", "Study/repeats=1",
                      "--vary", "Mesh/cells=[4, 1],[8, 1]", "--resume"},
                     workspace.path());
-    std::this_thread::sleep_for(std::chrono::seconds(3));
+    std::this_thread::sleep_for(std::chrono::seconds(8));
     EXPECT_TRUE(resumed.is_running());
     EXPECT_TRUE(other.is_running());
     other.send(SIGKILL);

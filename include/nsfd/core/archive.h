@@ -52,6 +52,10 @@ namespace nsfd
     virtual void histories(const std::string &name,
                            std::vector<double> &values) = 0;
 
+    /** The same number of values for each of the cells, or none at all. */
+    virtual void cells(const std::string &name,
+                       std::vector<double> &values) = 0;
+
     /** The same on all ranks; what goes in is that of the first one. */
     virtual void common(const std::string &name,
                         std::vector<double> &values) = 0;

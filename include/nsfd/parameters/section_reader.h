@@ -12,9 +12,9 @@ namespace nsfd
   class SourceText;       // a text that knows its lines and columns
   class InputErrors;      // collects every error of the input
 
-  /** Dimension of a quantity: exponents of kg, m, s. */
+  /** Dimension of a quantity: exponents of kg, m, s, K. */
   struct Unit {
-    int kilogram = 0, metre = 0, second = 0;
+    int kilogram = 0, metre = 0, second = 0, kelvin = 0;
   };
 
   namespace units
@@ -26,7 +26,9 @@ namespace nsfd
         viscosity{1, -1, -1}, viscosity_per_length{1, -2, -1},
         damage_viscosity{1, 0, -1}, wear_coefficient{-1, 1, 2},
         mass_per_area{1, -2, 0}, mass_per_length{1, -1, 0}, inertia{1, 2, 0},
-        inertia_per_length{1, 1, 0};
+        inertia_per_length{1, 1, 0}, temperature{0, 0, 0, 1},
+        heat_capacity{0, 2, -2, -1}, conductivity{1, 1, -3, -1},
+        conductance{1, 0, -3, -1};
   } // namespace units
 
   /** Closed or open interval a number must lie in; reported when it does not.

@@ -28,6 +28,13 @@ namespace nsfd
     double work = 0.;
   };
 
+  /** Of a scene with heat: J since t = 0, and K. */
+  struct HeatRecord {
+    double made = 0.;   ///< by friction, damage and flow
+    double stored = 0.; ///< in the bodies
+    double hottest = 0.;
+  };
+
   /** One accepted step: a line of history.csv. */
   struct HistoryRow {
     unsigned int step = 0;
@@ -40,6 +47,7 @@ namespace nsfd
     unsigned int newton = 0, krylov = 0;
     double residual = 0.;
     std::vector<double> reactions; ///< per driven boundary, dim components
+    std::optional<HeatRecord> heat;
   };
 
   /** What a run was and what it found: summary.json. */
@@ -58,6 +66,7 @@ namespace nsfd
            penetration_bound = 0., positive_friction_work = 0.,
            rigid_drift_max = 0.;
     std::optional<double> pressure_work; ///< in cracks, if the scene has one
+    std::optional<HeatRecord> heat; ///< at the end, hottest of the whole run
     /// largest viscous traction, if the scene has one: what R_max is shifted by
     std::optional<double> viscous_traction_max;
     unsigned int fragments = 1;

@@ -3,6 +3,7 @@
 #include "nsfd/cohesive_laws/cohesive_law.h"
 #include "nsfd/cohesive_laws/scatter.h"
 #include "nsfd/parameters/expression.h"
+#include "nsfd/scene/heat_input.h"
 #include "nsfd/scene/sliding_input.h"
 #include "nsfd/scene/stress_input.h"
 #include "nsfd/scene/where_input.h"
@@ -51,6 +52,7 @@ namespace nsfd
     /// Pa, of x, y, z, t: on the crack faces of points with beta <= threshold
     std::optional<Expression> crack_pressure;
     double pressure_threshold = 0.;
+    HeatOfFaces heat;
     /// whose traction the faces carry at t = 0; components that are not given
     /// are those of the cells
     StressInput initial_stress;

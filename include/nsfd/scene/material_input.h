@@ -1,6 +1,7 @@
 #pragma once
 
 #include "nsfd/parameters/expression.h"
+#include "nsfd/scene/heat_input.h"
 #include "nsfd/scene/stress_input.h"
 #include "nsfd/scene/where_input.h"
 
@@ -160,5 +161,6 @@ namespace nsfd
     std::array<Expression, 3> body_force; ///< N/m^3, of x, y, z, t
     StressInput initial_stress; ///< where there is no strain; 0 if not given
     std::optional<PlasticInput> plastic; ///< of materials with history
+    std::optional<HeatOfMaterial> heat;  ///< of all materials, or of none
   };
 } // namespace nsfd

@@ -103,6 +103,8 @@ namespace nsfd
           return true;
       return false;
     }
+    /** What is dissipated warms the bodies. */
+    bool has_heat() const { return !materials.empty() && materials[0].heat; }
     bool has_absorbing_sides() const
     {
       for (const auto &boundary : boundaries)

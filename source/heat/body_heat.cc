@@ -1,0 +1,94 @@
+#include "body_heat.h"
+
+#include "discretization/cells.h"
+#include "nsfd/scene/scene_input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace nsfd
+{
+  template <int dim>
+  BodyHeat<dim>::BodyHeat(const Discretization<dim> &discretization,
+                          const Communicator &communicator)
+      : discretization_(discretization), communicator_(communicator),
+        conduction_(discretization, communicator)
+  {
+    const auto &cells = discretization.cells();
+    for (std::size_t b = 0; b < cells.bodies.size(); ++b)
+      for (const auto &corner : cells.corners[b])
+        at_start_.push_back(discretization.input()
+                                .materials[cells.body_class(b).material]
+                                .heat->initial.at(corner));
+  }
+
+  template <int dim>
+  void BodyHeat<dim>::start(State &state) const
+  {
+    state.heat.temperature = at_start_;
+    state.heat.conducted_until = state.time;
+    measure(state, 0.);
+    state.heat.hottest_of_run = state.heat.hottest;
+  }
+
+  template <int dim>
+  void BodyHeat<dim>::accept(State &state, const std::function<void()> &show)
+  {
+    HeatState &heat = state.heat;
+    auto &T = heat.temperature;
+    const unsigned int n = conduction_.cells().n_corners();
+    conduction_.warm(heat.of_points, T);
+    const auto &points = discretization_.points();
+    std::vector<double> taken;
+    if (!heat.of_points.empty()) // with arkode nothing is dissipated
+      taken.assign(heat.of_points.begin(),
+                   heat.of_points.begin() + long(points.n_owned));
+    const auto &cells = discretization_.cells();
+    for (std::size_t b = 0; b < heat.of_cells.size(); ++b) {
+      const auto &material =
+          discretization_.input().materials[cells.body_class(b).material];
+      const double energy = material.heat->plastic_share * heat.of_cells[b];
+      const auto &capacity = conduction_.cells().of(b).capacity;
+      double whole = 0.;
+      for (const double part : capacity)
+        whole += part;
+      for (unsigned int v = 0; v < n; ++v)
+        T[b * n + v] += energy / whole;
+      taken.push_back(energy);
+    }
+    const double waited = state.time - heat.conducted_until;
+    if (conduction_.conducts() && waited >= conduction_.longest_step()) {
+      show();
+      iterations_ += conduction_.conduct(waited, state, T);
+      heat.conducted_until = state.time;
+    }
+    measure(state, communicator_.sum(taken));
+  }
+
+  /** @p made in the step, J. */
+  template <int dim>
+  void BodyHeat<dim>::measure(State &state, const double made) const
+  {
+    HeatState &heat = state.heat;
+    const auto &T = heat.temperature;
+    const unsigned int n = conduction_.cells().n_corners();
+    std::vector<double> stored(2 * T.size()); // and what of it moved
+    double hottest = -std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < T.size(); ++k) {
+      stored[k] =
+          conduction_.cells().of(k / n).capacity[k % n] * (T[k] - at_start_[k]);
+      stored[T.size() + k] = std::abs(stored[k]);
+      hottest = std::max(hottest, T[k]);
+    }
+    heat.made += made;
+    const auto sums = communicator_.sums(stored.data(), 2, T.size());
+    heat.stored = sums[0];
+    heat.moved = std::max(heat.moved, sums[1]);
+    heat.hottest = communicator_.max(hottest);
+    heat.hottest_of_run = std::max(heat.hottest_of_run, heat.hottest);
+  }
+
+  template class BodyHeat<2>;
+  template class BodyHeat<3>;
+} // namespace nsfd

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "heat_conduction.h"
+
+#include <functional>
+
+namespace nsfd
+{
+  /**
+   * The temperatures of the bodies from step to step: what friction, damage and
+   * flow have taken warms the cells where it was taken, at once; it is
+   * conducted whenever heat has had the time to cross a tenth of a cell. The
+   * sum of both is of first order in that time.
+   */
+  template <int dim>
+  class BodyHeat
+  {
+  public:
+    /** Collective. */
+    BodyHeat(const Discretization<dim> &discretization,
+             const Communicator &communicator);
+
+    /** As the materials say, at t = 0. Collective. */
+    void start(State &state) const;
+
+    /**
+     * The step to @p state was taken, which has what it has dissipated.
+     * @p show brings its points up to date. Collective. @throws
+     * std::runtime_error, see HeatConduction.
+     */
+    void accept(State &state, const std::function<void()> &show);
+
+    /** Iterations so far. */
+    unsigned long long iterations() const { return iterations_; }
+
+  private:
+    void measure(State &state, double made) const;
+
+    const Discretization<dim> &discretization_;
+    const Communicator &communicator_;
+    HeatConduction<dim> conduction_;
+    std::vector<double> at_start_; ///< K, by corner
+    unsigned long long iterations_ = 0;
+  };
+} // namespace nsfd

@@ -1,0 +1,220 @@
+#include "program.h"
+#include "restart.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+// Scenes that become warm: what friction, damage and flow take is in the
+// bodies, to the round-off of sums (1e-12), in every scheme, on any number of
+// ranks with the same bits, and after a restart.
+
+namespace end_to_end::test_heat
+{
+  namespace
+  {
+    /** A block that slides over a plane, pressed on it on the right and torn up
+        on the left, where its faces break. */
+    const char *const block = R"(
+set dimension = 2
+subsection Mesh
+  set type         = rectangle
+  set upper corner = 40 mm, 20 mm
+  set cells        = 8, 4
+end
+subsection Material: lining
+  set Young modulus    = 2 GPa
+  set Poisson ratio    = 0.3
+  set density          = 2000 kg/m^3
+  set heat capacity    = 800 J/kg/K
+  set conductivity     = 2 W/m/K
+  set initial velocity x = 10 m/s
+end
+subsection Interface: all
+  set law                 = camacho-ortiz
+  set strength            = 2 MPa
+  set toughness           = 20 J/m^2
+  set friction            = 0.4
+  set contact conductance = 5 kW/m^2/K
+end
+subsection Obstacle: disc
+  set where      = bottom
+  set point      = 0, 0
+  set normal     = 0, 1
+  set friction   = 0.4
+end
+subsection Boundary: left
+  set where      = y > 19.99 mm && x < 15 mm
+  set velocity x = 10 m/s
+  set velocity y = 0.5 m/s
+end
+subsection Boundary: right
+  set where      = y > 19.99 mm && x > 15 mm
+  set velocity x = 10 m/s
+  set velocity y = -0.1 m/s
+end
+subsection Time
+  set end = 0.2 ms
+end
+)";
+
+    Result warm_run(const Workspace &workspace, const std::string &name,
+                    const std::vector<std::string> &set,
+                    const unsigned int ranks = 1)
+    {
+      const auto file = workspace.path() / "block.prm";
+      write_text(file, block);
+      Launch launch{file, set, ranks};
+      return good_run(workspace, name, launch);
+    }
+
+    double heat(const Result &result, const std::string &name)
+    {
+      return result.summary.at("heat").at(name).get<double>();
+    }
+
+    TEST(Heat, IsWhatWasDissipated)
+    {
+      const Workspace workspace;
+      for (const std::vector<std::string> &set :
+           {std::vector<std::string>{"Time/scheme=explicit"},
+            {"Time/scheme=moreau-jean", "Time/step=2 us"},
+            {"Time/scheme=moreau-jean", "Time/step=2 us", "Time/theta=1"}}) {
+        const Result result = warm_run(workspace, set.back().substr(5, 5), set);
+        const double taken =
+            result.dissipated("damage") + result.dissipated("friction");
+        EXPECT_GT(result.dissipated("damage"), 0.02 * taken) << set.back();
+        EXPECT_GT(result.dissipated("friction"), 0.02 * taken) << set.back();
+        EXPECT_NEAR(heat(result, "made") / taken, 1., 1e-12) << set.back();
+        EXPECT_NEAR(heat(result, "stored") / taken, 1., 1e-12) << set.back();
+        EXPECT_GT(heat(result, "hottest"), 293.15 + 0.01) << set.back();
+        EXPECT_EQ(result.history["heat"].back(), heat(result, "made"));
+      }
+    }
+
+    // Conducted in every step. Implicit steps of joined cells know the number
+    // of ranks to the round-off of their factors.
+    TEST(Heat, RanksAgree)
+    {
+      const Workspace workspace;
+      const std::string fast = "Material: lining/conductivity=20000 W/m/K";
+      for (const std::vector<std::string> &set :
+           {std::vector<std::string>{"Time/scheme=explicit", fast},
+            {"Time/scheme=moreau-jean", "Time/step=2 us", fast}}) {
+        const std::string name = set.front().substr(12, 4);
+        const Result one = warm_run(workspace, name + "1", set);
+        EXPECT_GT(one.counter("heat_iterations"), 10.);
+        for (const unsigned int ranks : {2u, 3u}) {
+          const Result several =
+              warm_run(workspace, name + std::to_string(ranks), set, ranks);
+          if (set.size() == 2)
+            EXPECT_EQ(several.history_text, one.history_text) << ranks;
+          for (const char *what : {"made", "stored", "hottest"})
+            EXPECT_NEAR(heat(several, what) / heat(one, what), 1., 1e-6)
+                << ranks << what;
+        }
+      }
+    }
+
+    TEST(Heat, GoesOnFromACheckpoint)
+    {
+      const Workspace workspace;
+      const auto file = workspace.path() / "block.prm";
+      write_text(file, block);
+      for (const std::vector<std::string> &set :
+           {std::vector<std::string>{"Time/scheme=explicit"},
+            {"Time/scheme=moreau-jean", "Time/step=2 us"}}) {
+        const Launch launch{file, set};
+        const std::string name = set.front().substr(12, 4);
+        const Result whole = good_run(workspace, name, launch);
+        Result resumed;
+        ASSERT_NO_FATAL_FAILURE(
+            go_on(workspace, launch, launch, whole, resumed));
+        EXPECT_EQ(resumed.history_text, whole.history_text);
+      }
+    }
+
+    // A bar that is pulled beyond its yield stress, adiabatic: Delta T =
+    // share * plastic work / (rho c V), the same everywhere.
+    TEST(Heat, OfFlowIsItsShareOfThePlasticWork)
+    {
+      const Workspace workspace;
+      const auto file = workspace.path() / "bar.prm";
+      write_text(file, R"(
+set dimension = 2
+set plane     = stress
+subsection Mesh
+  set type         = rectangle
+  set upper corner = 20 mm, 10 mm
+  set cells        = 4, 2
+end
+subsection Material: steel
+  set model                       = j2 plastic
+  set Young modulus               = 200 GPa
+  set Poisson ratio               = 0.3
+  set density                     = 7800 kg/m^3
+  set yield stress                = 300 MPa
+  set isotropic hardening modulus = 1 GPa
+  set heat capacity               = 480 J/kg/K
+  set plastic heat share          = 0.9
+  set initial velocity x          = 50 m/s * x / 20 mm
+end
+subsection Interface: all
+  set law = joined
+end
+subsection Boundary: left
+  set velocity x = 0
+end
+subsection Boundary: right
+  set velocity x = 50 m/s
+end
+subsection Time
+  set end = 40 us
+end
+)");
+      for (const std::vector<std::string> &set :
+           {std::vector<std::string>{"Time/scheme=moreau-jean",
+                                     "Time/step=0.4 us"},
+            {"Time/scheme=explicit"}}) {
+        const Result result =
+            good_run(workspace, set.front().substr(12, 4), {file, set});
+        const double made = heat(result, "made");
+        EXPECT_GT(made, 0.);
+        EXPECT_NEAR(heat(result, "stored") / made, 1., 1e-12);
+        // explicit steps book the flow of a step with the next one
+        const double plastic = result.dissipated("plastic");
+        EXPECT_NEAR(made / (0.9 * plastic), 1., set.size() == 2 ? 1e-12 : 0.05);
+        const double mean = made / (7800. * 480. * 20e-3 * 10e-3);
+        EXPECT_NEAR((heat(result, "hottest") - 293.15) / mean, 1., 0.2);
+      }
+    }
+
+    TEST(Heat, IsReadOrRefused)
+    {
+      const Workspace workspace;
+      const auto file = workspace.path() / "block.prm";
+      write_text(file, block);
+      const auto message = [&](const std::vector<std::string> &set) {
+        std::vector<std::string> words = {file.string(), "--check"};
+        for (const std::string &one : set) {
+          words.push_back("--set");
+          words.push_back(one);
+        }
+        const Outcome outcome = nsfd(workspace, words);
+        EXPECT_EQ(outcome.exit_code, 1);
+        return outcome.err;
+      };
+      const auto has = [](const std::string &text, const std::string &words) {
+        return text.find(words) != std::string::npos;
+      };
+      EXPECT_TRUE(has(message({"motion=large"}),
+                      "motion = large has no temperatures yet"));
+      EXPECT_TRUE(
+          has(message({"Material: lining/heat capacity=0"}), "heat capacity"));
+      EXPECT_TRUE(has(message({"Material: lining/heat capacity=2 Pa"}),
+                      "an energy per mass and kelvin"));
+      EXPECT_TRUE(has(message({"Material: lining/plastic heat share=1"}),
+                      "the material does not flow"));
+    }
+  } // namespace
+} // namespace end_to_end::test_heat
