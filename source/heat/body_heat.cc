@@ -66,6 +66,18 @@ namespace nsfd
     measure(state, communicator_.sum(taken));
   }
 
+  template <int dim>
+  void
+  BodyHeat<dim>::fill_counters(const double time,
+                               std::map<std::string, double> &counters) const
+  {
+    counters["heat_iterations"] = double(iterations_);
+    counters["cells_crossed_by_heat"] =
+        conduction_.conducts()
+            ? std::sqrt(0.1 * time / conduction_.longest_step())
+            : 0.;
+  }
+
   /** @p made in the step, J. */
   template <int dim>
   void BodyHeat<dim>::measure(State &state, const double made) const

@@ -3,6 +3,8 @@
 #include "heat_conduction.h"
 
 #include <functional>
+#include <map>
+#include <string>
 
 namespace nsfd
 {
@@ -30,8 +32,10 @@ namespace nsfd
      */
     void accept(State &state, const std::function<void()> &show);
 
-    /** Iterations so far. */
-    unsigned long long iterations() const { return iterations_; }
+    /** Iterations of this process, and how many cells heat has crossed in
+        @p time (s), sqrt(kappa t) / l. */
+    void fill_counters(double time,
+                       std::map<std::string, double> &counters) const;
 
   private:
     void measure(State &state, double made) const;

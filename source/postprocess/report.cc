@@ -158,6 +158,13 @@ namespace nsfd
             },
             shown[i]);
 
+      if (report.summary.heat && report.summary.heat->made > 0.) {
+        const PictureOptions warmth = picture_options(
+            {snapshots.back()}, PictureOptions::Colouring::warmth);
+        strip += figures.figure("temperature_final", [&](const SvgUse use) {
+          return body_picture(snapshots.back(), warmth, use);
+        });
+      }
       if (report.summary.fragments > 1) {
         PictureOptions by_fragment = options;
         by_fragment.colouring = PictureOptions::Colouring::fragment;
@@ -231,6 +238,10 @@ namespace nsfd
                       ? "of it pressure in cracks: " + energy(*s.pressure_work)
                       : "");
       physics.add("simulated time", engineering(s.final_time, "s", 4));
+      if (s.heat)
+        physics.add("hottest temperature",
+                    fmt::format("{:.4g} K", s.heat->hottest),
+                    "heat made: " + energy(s.heat->made));
       physics.add_group("dissipated by");
       for (const auto &line : dissipated_lines()) {
         const double value = e.*line.member;

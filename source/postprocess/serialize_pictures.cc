@@ -49,6 +49,7 @@ namespace nsfd
         pass(polygon.displacement);
         pass(polygon.value);
         pass(polygon.speed);
+        pass(polygon.warmth);
         pass(polygon.fragment);
         pass(polygon.material);
       }

@@ -26,7 +26,7 @@ namespace nsfd
     struct Part {
       unsigned long long cell = 0;
       unsigned int face = 0, n_corners = 0, fragment = 0, material = 0;
-      double value = 0., speed = 0.;
+      double value = 0., speed = 0., warmth = 0.;
       Vector3 centre{};
       std::array<Vector3, 4> reference{}, displacement{};
     };
@@ -54,6 +54,7 @@ namespace nsfd
       const std::vector<double> displacement_, velocity_; ///< nodal
       const Sampler<dim> middle_;
       std::vector<double> stress_; ///< von Mises, mean over the body
+      std::vector<double> warmth_; ///< likewise; empty: there is no heat
     };
 
     template <int dim>
@@ -89,6 +90,18 @@ namespace nsfd
                      });
       for (std::size_t b = 0; b < n_bodies_; ++b)
         stress_[b] /= volume[b];
+      const auto &cells = discretization.cells();
+      const auto &T = state.heat.temperature;
+      for (std::size_t b = 0; !T.empty() && b < n_bodies_; ++b) {
+        const auto &corners = cells.corners[b];
+        const auto &heat = *discretization.input()
+                                .materials[cells.body_class(b).material]
+                                .heat;
+        double sum = 0.;
+        for (std::size_t v = 0; v < corners.size(); ++v)
+          sum += T[b * corners.size() + v] - heat.initial.at(corners[v]);
+        warmth_.push_back(sum / double(corners.size()));
+      }
     }
 
     template <int dim>
@@ -106,6 +119,8 @@ namespace nsfd
       part.fragment = fragment_[b];
       part.material = discretization_.cells().body_class(b).material;
       part.value = stress_[b];
+      if (!warmth_.empty())
+        part.warmth = warmth_[b];
       part.speed = middle_.value(0, v).norm();
       part.centre = in_space<dim>(discretization_.cells().centre(b));
       const auto order = cyclic(part.n_corners);
@@ -237,6 +252,7 @@ namespace nsfd
                                     part.displacement.begin() + part.n_corners);
         polygon.value = part.value;
         polygon.speed = part.speed;
+        polygon.warmth = part.warmth;
         polygon.fragment = part.fragment;
         polygon.material = part.material;
       }

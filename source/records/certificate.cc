@@ -152,6 +152,11 @@ namespace nsfd
                           within(*facts.heat_residual <= largest_defect));
       if (line.verdict == Verdict::bad)
         line.remark = "the bodies have not the heat that was made in them";
+      else if (facts.cells_crossed_by_heat < 1.)
+        line.remark = fmt::format("heat has crossed {:.2g} of a cell: the "
+                                  "hottest temperature is that "
+                                  "of the cells, surfaces are hotter",
+                                  facts.cells_crossed_by_heat);
       return line;
     }
 

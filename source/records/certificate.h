@@ -43,6 +43,7 @@ namespace nsfd
     double balance_residual = 0.;
     /// |stored - made| over the heat that has moved; nothing: there is none
     std::optional<double> heat_residual;
+    double cells_crossed_by_heat = 0.;
     std::vector<GivenEnergy> given; ///< by the lines that must not
     double penetration = 0., penetration_bound = 0.; ///< largest ones, m
     double penetration_excess = 0.; ///< of a point above its own bound, m

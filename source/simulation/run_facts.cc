@@ -196,6 +196,9 @@ namespace nsfd
     if (input.statics)
       facts.static_tolerance = input.statics->tolerance;
     facts.balance_residual = summary.balance_residual_max;
+    const auto crossed = summary.counters.find("cells_crossed_by_heat");
+    if (crossed != summary.counters.end())
+      facts.cells_crossed_by_heat = crossed->second;
     if (summary.heat)
       facts.heat_residual =
           state.heat.moved > 0.

@@ -428,7 +428,7 @@ namespace nsfd
         parts_.adaptive->fill_counters(counters);
       parts_.events.fill_counters(state_, counters);
       if (parts_.heat)
-        counters["heat_iterations"] = double(parts_.heat->iterations());
+        parts_.heat->fill_counters(state_.time, counters);
       certified_ = recorder_.finish(state_, failure, store_->n_failed(),
                                     std::move(counters));
     }

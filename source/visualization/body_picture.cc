@@ -138,7 +138,8 @@ namespace nsfd
       double y = top + height + 8.;
       body += scale_bar(y);
       if (options_.colouring == Colouring::stress ||
-          options_.colouring == Colouring::speed)
+          options_.colouring == Colouring::speed ||
+          options_.colouring == Colouring::warmth)
         body += colour_bar(y);
       y += 48.;
       body += legend(y);
@@ -344,14 +345,16 @@ namespace nsfd
 
     std::string BodyPicture::colour_bar(const double y) const
     {
-      const bool stress = options_.colouring == Colouring::stress;
-      const DisplayUnit unit =
-          axis_scale(options_.colour_max, stress ? "Pa" : "m/s");
+      const auto [name, base] = options_.colouring == Colouring::stress
+                                    ? std::pair("von Mises stress", "Pa")
+                                : options_.colouring == Colouring::warmth
+                                    ? std::pair("temperature rise", "K")
+                                    : std::pair("speed", "m/s");
+      const DisplayUnit unit = axis_scale(options_.colour_max, base);
       const double bar = 170., x0 = options_.width - bar - 16.;
       const unsigned int n_parts = 50;
-      std::string body = text_element(
-          x0, y + 8., "",
-          label_with_unit(stress ? "von Mises stress" : "speed", unit.unit));
+      std::string body =
+          text_element(x0, y + 8., "", label_with_unit(name, unit.unit));
       for (unsigned int i = 0; i < n_parts; ++i)
         // each part reaches below the next: no seams
         body += fmt::format(

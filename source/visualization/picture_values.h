@@ -9,8 +9,14 @@ namespace nsfd
   inline double coloured_value(const Snapshot::Polygon &polygon,
                                const PictureOptions::Colouring colouring)
   {
-    return colouring == PictureOptions::Colouring::speed ? polygon.speed
-                                                         : polygon.value;
+    switch (colouring) {
+    case PictureOptions::Colouring::speed:
+      return polygon.speed;
+    case PictureOptions::Colouring::warmth:
+      return polygon.warmth;
+    default:
+      return polygon.value;
+    }
   }
 
   /** As a picture shows it. */

@@ -85,12 +85,12 @@ namespace nsfd
   /** How body_picture() draws; the same for all pictures of a series. */
   struct PictureOptions {
     /// crack: in space, the flanks of cracks inside the outline of the body
-    enum class Colouring { stress, speed, fragment, crack };
+    enum class Colouring { stress, speed, warmth, fragment, crack };
 
     Colouring colouring = Colouring::stress;
     /// the displacement is drawn this many times larger; its mean is not
     double magnification = 1.;
-    double colour_max = 0.; ///< Pa or m/s at the upper end of the colour map
+    double colour_max = 0.; ///< Pa, m/s or K at the upper end of the colour map
     /// frame in the drawing plane (m); all of it must be set
     std::array<double, 2> lower{}, upper{};
     double width = 400., max_height = 340.; ///< of the body, in pixels

@@ -100,8 +100,9 @@ namespace nsfd
     struct Polygon {
       std::vector<std::array<double, 3>> reference;    ///< undeformed corners
       std::vector<std::array<double, 3>> displacement; ///< at the corners
-      double value = 0.; ///< von Mises stress (Pa)
-      double speed = 0.; ///< |v| (m/s)
+      double value = 0.;  ///< von Mises stress (Pa)
+      double speed = 0.;  ///< |v| (m/s)
+      double warmth = 0.; ///< temperature less that at t = 0, mean (K)
       unsigned int fragment = 0, material = 0;
     };
     struct FacePiece {
