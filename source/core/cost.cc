@@ -87,6 +87,12 @@ namespace nsfd
     begin_message_counts();
   }
 
+  TimePassed passed_since_begin()
+  {
+    return {std::chrono::duration<double>(Clock::now() - meter().begin).count(),
+            cpu_seconds() - meter().cpu_at_begin};
+  }
+
   std::vector<CostLine> cost_lines()
   {
     Meter &m = meter();

@@ -52,6 +52,12 @@ namespace nsfd
   /** From now on all time is counted, from zero. */
   void begin_costs();
 
+  struct TimePassed {
+    double wall = 0., cpu = 0.; ///< s
+  };
+  /** Since begin_costs(). */
+  TimePassed passed_since_begin();
+
   struct CostLine {
     std::string name;
     double seconds = 0.;

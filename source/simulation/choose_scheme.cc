@@ -1,6 +1,5 @@
 #include "choose_scheme.h"
 
-#include "model.h"
 #include "silence.h"
 
 #include "records/engineering.h"
@@ -8,6 +7,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace nsfd
 {
@@ -24,9 +25,15 @@ namespace nsfd
 
     /** The steps of both schemes. */
     struct Comparison {
-      const SceneInput *cheaper = nullptr; ///< with explicit steps, if they are
+      std::unique_ptr<SceneInput> cheaper; ///< with explicit steps, if they are
       std::string text;
+      ChosenScene parts; ///< of the same, without the scene, or none
     };
+
+    std::unique_ptr<SceneInput> copy(const SceneInput &scene)
+    {
+      return std::make_unique<SceneInput>(scene);
+    }
 
     template <int dim>
     Comparison compare(const SceneInput &input,
@@ -34,37 +41,50 @@ namespace nsfd
                        const Communicator &communicator)
     {
       if (!automatic.longest_steps && automatic.given_steps)
-        return {automatic.given_steps.get(),
+        return {copy(*automatic.given_steps),
                 fmt::format("all bodies are rigid, and steps are those of the "
                             "scene, {}",
-                            engineering(input.time.step, "s"))};
+                            engineering(input.time.step, "s")),
+                {}};
       if (!automatic.longest_steps)
-        return {nullptr, automatic.refused};
-      Model<dim> model;
+        return {nullptr, automatic.refused, {}};
+      auto scene = copy(*automatic.longest_steps);
+      auto model = std::make_unique<Model<dim>>();
       std::vector<std::string> problems;
+      std::string warnings;
       {
-        const Silence silence; // the same warnings come with the one chosen
-        problems = model.build(*automatic.longest_steps, communicator);
+        const Silence silence; // until it is chosen
+        problems = model->build(*scene, communicator);
+        warnings = silence.unheard();
       }
       if (!problems.empty())
-        return {nullptr, problems.front()};
+        return {nullptr, problems.front(), {}};
 
-      const double longest = model.dynamic_step(*automatic.longest_steps),
-                   step = model.dynamic_step(input);
+      const double longest = model->dynamic_step(*scene),
+                   step = model->dynamic_step(input);
       // shorter ones are asked for by the scene, and are explicit all the more
       const bool as_given = step <= longest && automatic.given_steps;
       const double explicit_step = as_given ? step : longest;
       const double n_explicit = std::ceil(input.time.end / explicit_step),
                    n_implicit = std::ceil(input.time.end / step),
                    ratio = implicit_over_explicit(dim);
-      const auto &scene =
-          as_given ? *automatic.given_steps : *automatic.longest_steps;
-      return {
-          n_explicit > ratio * n_implicit ? nullptr : &scene,
+      Comparison found;
+      found.text =
           fmt::format("{:.0f} explicit steps of {} or {:.0f} implicit ones of "
                       "{}, each at the cost of some {:g} explicit ones",
                       n_explicit, engineering(explicit_step, "s"), n_implicit,
-                      engineering(step, "s"), ratio)};
+                      engineering(step, "s"), ratio);
+      if (n_explicit > ratio * n_implicit)
+        return found;
+      if (as_given) {
+        found.cheaper = copy(*automatic.given_steps);
+        return found;
+      }
+      found.cheaper = std::move(scene); // its parts refer to it
+      std::get<std::unique_ptr<Model<dim>>>(found.parts.built) =
+          std::move(model);
+      found.parts.warnings = std::move(warnings);
+      return found;
     }
 
     Comparison compare(const SceneInput &input,
@@ -94,20 +114,25 @@ namespace nsfd
     }
   } // namespace
 
-  SceneInput choose_scheme(const SceneInput &input, const bool check,
-                           const Communicator &communicator)
+  ChosenScene choose_scheme(const SceneInput &input, const bool check,
+                            const Communicator &communicator)
   {
+    ChosenScene chosen;
     if (input.automatic) {
-      const Comparison found = compare(input, *input.automatic, communicator);
-      if (!found.cheaper)
-        return implicit(input, found.text);
-      SceneInput scene = *found.cheaper;
-      scene.scheme_choice = "explicit: " + found.text;
-      return scene;
+      Comparison found = compare(input, *input.automatic, communicator);
+      if (!found.cheaper) {
+        chosen.scene = copy(implicit(input, found.text));
+        return chosen;
+      }
+      found.cheaper->scheme_choice = "explicit: " + found.text;
+      chosen = std::move(found.parts);
+      chosen.scene = std::move(found.cheaper);
+      return chosen;
     }
-    SceneInput scene = input;
-    if (scene.alternative)
-      scene.scheme_choice = advice(input, check, communicator);
-    return scene;
+    auto scene = copy(input);
+    if (scene->alternative)
+      scene->scheme_choice = advice(input, check, communicator);
+    chosen.scene = std::move(scene);
+    return chosen;
   }
 } // namespace nsfd

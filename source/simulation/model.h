@@ -23,6 +23,8 @@ namespace nsfd
    */
   template <int dim>
   struct Model {
+    static constexpr int dimension = dim;
+
     std::unique_ptr<dealii::Triangulation<dim>> triangulation;
     std::unique_ptr<MeshGroups<dim>> groups;
     std::unique_ptr<Discretization<dim>> discretization;

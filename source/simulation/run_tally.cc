@@ -2,6 +2,7 @@
 
 #include "run_info.h"
 
+#include "core/cost.h"
 #include "core/stopwatch.h"
 #include "nsfd/core/archive.h"
 
@@ -14,8 +15,9 @@ namespace nsfd
                           const TimeStepping<dim> &steps,
                           const Communicator &communicator)
       : input_(input), model_(model), steps_(steps),
-        communicator_(communicator), wall_start_(wall_seconds()),
-        setup_start_(cpu_seconds())
+        communicator_(communicator),
+        wall_start_(wall_seconds() - passed_since_begin().wall),
+        setup_start_(cpu_seconds() - passed_since_begin().cpu)
   {
   }
 

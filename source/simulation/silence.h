@@ -2,10 +2,11 @@
 
 #include <iostream>
 #include <sstream>
+#include <string>
 
 namespace nsfd
 {
-  /** While one lives, nothing is said on standard error. */
+  /** While one lives, nothing is said on standard error; it can be later. */
   class Silence
   {
   public:
@@ -13,6 +14,8 @@ namespace nsfd
     ~Silence() { std::cerr.rdbuf(before_); }
     Silence(const Silence &) = delete;
     Silence &operator=(const Silence &) = delete;
+
+    std::string unheard() const { return unheard_.str(); }
 
   private:
     std::ostringstream unheard_;

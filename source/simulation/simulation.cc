@@ -21,6 +21,8 @@
 
 #include <iostream>
 #include <stdexcept>
+#include <type_traits>
+#include <utility>
 
 namespace nsfd
 {
@@ -31,8 +33,10 @@ namespace nsfd
     class Simulation
     {
     public:
+      /** @p built: all its parts, or null. */
       Simulation(const SceneInput &input, const RunOptions &options,
-                 const Communicator &communicator);
+                 const Communicator &communicator,
+                 std::unique_ptr<Model<dim>> built);
       int run();
 
     private:
@@ -64,22 +68,25 @@ namespace nsfd
       RunRecorder<dim> &recorder_ = parts_.recorder;
       State &state_ = parts_.state;
       std::unique_ptr<RunStore<dim>> store_; ///< null: only checked
+      const bool is_built_;                  ///< before
       bool certified_ = false;
     };
 
     template <int dim>
     Simulation<dim>::Simulation(const SceneInput &input,
                                 const RunOptions &options,
-                                const Communicator &communicator)
+                                const Communicator &communicator,
+                                std::unique_ptr<Model<dim>> built)
         : input_(input), options_(options), communicator_(communicator),
-          parts_(input, options, communicator)
+          parts_(input, options, communicator), is_built_(built)
     {
+      if (built)
+        model_ = std::move(*built);
     }
 
     template <int dim>
     int Simulation<dim>::run()
     {
-      begin_costs();
       auto charge = std::make_unique<Charge>(Cost::set_up);
       std::optional<FoundCheckpoint> found;
       if (options_.resume && !options_.check) {
@@ -113,7 +120,9 @@ namespace nsfd
     template <int dim>
     bool Simulation<dim>::build()
     {
-      auto problems = model_.build(input_, communicator_);
+      std::vector<std::string> problems;
+      if (!is_built_)
+        problems = model_.build(input_, communicator_);
       if (problems.empty() && input_.mesh_changes())
         try {
           parts_.adaptive = make_mesh_changes(input_, communicator_, model_);
@@ -438,9 +447,21 @@ namespace nsfd
                 const MPI_Comm mpi)
   {
     const Communicator communicator(mpi);
-    const SceneInput scene = choose_scheme(input, options.check, communicator);
-    if (scene.dimension == 2)
-      return Simulation<2>(scene, options, communicator).run();
-    return Simulation<3>(scene, options, communicator).run();
+    begin_costs();
+    ChosenScene chosen = [&] {
+      const Charge charge(Cost::set_up);
+      return choose_scheme(input, options.check, communicator);
+    }();
+    std::cerr << chosen.warnings;
+    if (!std::get<0>(chosen.built) && !std::get<1>(chosen.built))
+      begin_costs(); // nothing of it is in the run
+    const auto run = [&](auto &built) {
+      using Parts = std::decay_t<decltype(*built)>;
+      return Simulation<Parts::dimension>(*chosen.scene, options, communicator,
+                                          std::move(built))
+          .run();
+    };
+    return chosen.scene->dimension == 2 ? run(std::get<0>(chosen.built))
+                                        : run(std::get<1>(chosen.built));
   }
 } // namespace nsfd

@@ -44,7 +44,7 @@ subsection Time
     SceneInput chosen(const std::string &text)
     {
       const auto scene = read(text);
-      return choose_scheme(*scene, false, Communicator(MPI_COMM_SELF));
+      return *choose_scheme(*scene, false, Communicator(MPI_COMM_SELF)).scene;
     }
   } // namespace
 
@@ -152,7 +152,7 @@ end
       text.erase(text.find("  set scheme = auto\n"),
                  std::string("  set scheme = auto\n").size());
       return choose_scheme(*read(text), false, Communicator(MPI_COMM_SELF))
-          .time.scheme_name;
+          .scene->time.scheme_name;
     };
     EXPECT_EQ(chosen("  set end = 1 s\n"), "explicit");
     EXPECT_EQ(chosen("  set end = 1 s\n  set theta = 0.6\n"), "moreau-jean");
@@ -166,7 +166,7 @@ end
       text.erase(text.find("  set scheme = auto\n"),
                  std::string("  set scheme = auto\n").size());
       const SceneInput scene =
-          choose_scheme(*read(text), check, Communicator(MPI_COMM_SELF));
+          *choose_scheme(*read(text), check, Communicator(MPI_COMM_SELF)).scene;
       EXPECT_EQ(scene.time.scheme_name, "moreau-jean");
       return scene.scheme_choice;
     };
