@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 // Scenes that become warm: what friction, damage and flow take is in the
@@ -188,6 +189,30 @@ end
         const double mean = made / (7800. * 480. * 20e-3 * 10e-3);
         EXPECT_NEAR((heat(result, "hottest") - 293.15) / mean, 1., 0.2);
       }
+    }
+
+    // Jaeger's band: see the scene.
+    TEST(Heat, FlashTemperatureOfJaeger)
+    {
+      const Workspace workspace;
+      const Result result =
+          good_run(workspace, "band", {benchmark("flash_temperature")});
+      const double q = 0.5 * 100e6 * 0.01, k = 50., kappa = k / (7500. * 500.),
+                   V = 0.0266667, L = V * 1e-3 / (2. * kappa);
+      const auto rise = [&](const double X) {
+        constexpr unsigned int n = 4000;
+        double sum = 0.; // the logarithm at 0 is between two places
+        for (unsigned int i = 0; i < n; ++i) {
+          const double u = X - L + 2. * L * (i + 0.5) / n;
+          sum += std::exp(-u) * std::cyl_bessel_k(0., std::abs(u)) * 2. * L / n;
+        }
+        return 2. * q * kappa / (M_PI * k * V) * sum;
+      };
+      double hottest = 0.;
+      for (double X = -1.; X < 1.; X += 0.0503)
+        hottest = std::max(hottest, rise(X * L));
+      EXPECT_NEAR(hottest, 9.91, 0.01);
+      EXPECT_NEAR(heat(result, "hottest") / hottest, 1., 0.02);
     }
 
     TEST(Heat, IsReadOrRefused)
