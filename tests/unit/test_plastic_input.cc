@@ -92,6 +92,7 @@ end
           {{at + "isotropic hardening modulus=-1 GPa"},
            "isotropic hardening modulus"},
           {{at + "saturation stress=0"}, "there is no `saturation stress`"},
+          {{at + "hardening exponent=-0.1"}, "hardening exponent"},
           {{at + "viscosity=0"}, "viscosity"},
           {{at + "viscosity=1 MPa"}, "viscosity"},
           {{at + "rate exponent=0.5"}, "rate exponent"},
@@ -117,6 +118,12 @@ end
       InputErrors errors; // four entries too many
       EXPECT_EQ(read(steel, {at + "model=j2 plastic"}, errors), nullptr);
       EXPECT_EQ(errors.n_errors(), 3u) << errors.report();
+      InputErrors power; // in place of the linear and the saturating part
+      EXPECT_EQ(read(steel, {at + "hardening exponent=0.1"}, power), nullptr);
+      EXPECT_EQ(power.n_errors(), 3u) << power.report();
+      EXPECT_NE(power.report().find("grows by the power law"),
+                std::string::npos)
+          << power.report();
       InputErrors elastic;
       EXPECT_EQ(read(steel, {at + "model=linear elastic"}, elastic), nullptr);
       EXPECT_EQ(elastic.n_errors(), 8u) << elastic.report();
