@@ -19,16 +19,19 @@ namespace nsfd
       plastic.yield_stress =
           reader.number("yield stress", "", units::pressure, Range::positive(),
                         "Pa, in uniaxial stress, before any flow");
-      plastic.hardening_exponent = reader.number(
-          "hardening exponent", "0", units::none, Range::closed(0., 0.99),
-          "N of the power law strain = yield/E (stress/yield)^(1/N) beyond "
-          "yield; 0: none");
-      const bool power = plastic.hardening_exponent > 0.;
-      const std::string by_power = "the yield stress grows by the power law of "
-                                   "`hardening exponent`";
-      if (power)
+      const std::string
+          power = "hardening exponent",
+          power_text = "N of the power law strain = yield/E "
+                       "(stress/yield)^(1/N) beyond yield, in place of the "
+                       "other isotropic hardening";
+      const std::string by_power =
+          "the yield stress grows by the power law of `" + power + "`";
+      const bool has_power = reader.optional(power, power_text);
+      if (has_power) {
+        plastic.hardening_exponent = reader.number(
+            power, "", units::none, {1e-6, 1., false, true}, power_text);
         reader.refuse({"isotropic hardening modulus"}, by_power);
-      else
+      } else
         plastic.isotropic =
             reader.number("isotropic hardening modulus", "0", units::pressure,
                           Range::non_negative(),
@@ -39,7 +42,7 @@ namespace nsfd
           "Pa, of the back stress in uniaxial stress; the middle of the "
           "surface follows the flow");
       const std::string exponent = "saturation exponent";
-      if (power) {
+      if (has_power) {
         reader.refuse({"saturation stress", exponent}, by_power);
         return;
       }
