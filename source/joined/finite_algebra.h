@@ -77,6 +77,15 @@ namespace nsfd::finite
     return y;
   }
 
+  template <int dim>
+  double trace(const Matrix<dim> &A)
+  {
+    double result = 0.;
+    for (unsigned int c = 0; c < dim; ++c)
+      result += A[c * dim + c];
+    return result;
+  }
+
   /** f_i -= weight P g_i: what the stress @p P gives to @p n nodes, with the
       gradients @p g of their shape functions. */
   template <int dim>

@@ -1,5 +1,6 @@
 #include "finite_algebra.h"
 #include "finite_forces.h"
+#include "small_strain.h"
 
 #include "discretization/cells.h"
 #include "materials/matrix_log.h"
@@ -8,7 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
-// Forces of cells whose materials have a history.
+// Forces of cells whose materials have a history, and of those beside them in
+// small motions.
 
 namespace nsfd
 {
@@ -100,6 +102,55 @@ namespace nsfd
     return {volume, now};
   }
 
+  /** Of small strain, of any material; deformation() is 1 + H. */
+  template <int dim>
+  std::array<double, 2>
+  FiniteForces<dim>::set_small_cell(const std::size_t cell, double *f)
+  {
+    const Tables &here = tables(cell);
+    const unsigned int n = here.n_nodes, n_q = unsigned(here.JxW.size());
+    const std::size_t n_cells = stored_.size();
+    const auto gradients = [&](const unsigned int q) {
+      return &here.gradients[std::size_t(q) * n * dim];
+    };
+    double volume = 0., now = 0.;
+    taken_[cell] = taken_[n_cells + cell] = 0.;
+    for (unsigned int q = 0; q < n_q; ++q) {
+      volume += here.JxW[q];
+      now += here.JxW[q] *
+             (1. + finite::trace<dim>(deformation(cell, gradients(q))) - dim);
+    }
+    dilatations_[cell] = now / volume - 1.;
+    const double *mean = here.one_dilatation ? &dilatations_[cell] : nullptr;
+    double tension = 0.; // sigma:1 / dim, J
+    for (unsigned int q = 0; q < n_q; ++q) {
+      const double JxW = here.JxW[q];
+      SmallStrain<dim> at;
+      if (!set_small_strain(
+              discretization_, histories_, cell, q, here.n_same,
+              small_gradient<dim>(deformation(cell, gradients(q)), mean), at)) {
+        inverted_ = int(cell);
+        break;
+      }
+      stored_[cell] += JxW * at.energy;
+      taken_[cell] += JxW * at.plastic;
+      taken_[n_cells + cell] += JxW * at.viscous;
+      peaks_[cell] = std::max(peaks_[cell], finite::square<dim>(at.sigma));
+      if (mean) {
+        const double p = finite::trace<dim>(at.sigma) / dim;
+        tension += JxW * p;
+        for (unsigned int c = 0; c < dim; ++c)
+          at.sigma[c * dim + c] -= p;
+      }
+      finite::subtract_forces<dim>(at.sigma, JxW, gradients(q), n, f);
+    }
+    for (unsigned int q = 0; q < n_q && mean; ++q)
+      finite::subtract_forces<dim>(finite::unit<dim>(),
+                                   here.JxW[q] * (tension / volume),
+                                   gradients(q), n, f);
+    return {volume, now};
+  }
+
   /** P where F is, beside point @p q. */
   template <int dim>
   auto FiniteForces<dim>::flowing_stress(const std::size_t cell,
@@ -146,6 +197,8 @@ namespace nsfd
 
 #define NSFD_INSTANTIATE(dim)                                                  \
   template std::array<double, 2> FiniteForces<dim>::set_flowing_cell(          \
+      std::size_t, double *);                                                  \
+  template std::array<double, 2> FiniteForces<dim>::set_small_cell(            \
       std::size_t, double *);                                                  \
   template FiniteForces<dim>::Matrix FiniteForces<dim>::flowing_stress(        \
       std::size_t, unsigned int, const Matrix &) const;                        \

@@ -56,10 +56,12 @@ namespace nsfd
       Tables &here = tables_.emplace_back();
       if (!differ_ && cells.bodies.classes[k].bodies.empty())
         continue;
-      const auto of_body =
-          cells.shape(differ_ ? k : cells.bodies.classes[k].bodies[0]);
+      const std::size_t one = differ_ ? k : cells.bodies.classes[k].bodies[0];
+      const auto of_body = cells.shape(one);
       const BodyShape<dim> &shape = *of_body;
       here.n_nodes = shape.n_nodes;
+      here.one_dilatation = here.n_nodes == 1u << dim && histories_.of(one) &&
+                            !input.plane_stress;
       const bool constant = shape.reference.is_simplex() &&
                             shape.n_nodes == dim + 1 &&
                             shape.elasticity.size() <= 1;
@@ -153,40 +155,6 @@ namespace nsfd
       const Matrix P = finite::first_piola<dim>(F, S);
       peaks_[cell] = std::max(peaks_[cell], finite::square<dim>(P));
       finite::subtract_forces<dim>(P, JxW, g, n, f);
-    }
-    return {volume, now};
-  }
-
-  /** The same of small strain, of any material; deformation() is 1 + H. */
-  template <int dim>
-  std::array<double, 2>
-  FiniteForces<dim>::set_small_cell(const std::size_t cell, double *f)
-  {
-    const Tables &here = tables(cell);
-    const unsigned int n = here.n_nodes, n_q = unsigned(here.JxW.size());
-    const std::size_t n_cells = stored_.size();
-    double volume = 0., now = 0.;
-    taken_[cell] = taken_[n_cells + cell] = 0.;
-    for (unsigned int q = 0; q < n_q; ++q) {
-      const double *g = &here.gradients[std::size_t(q) * n * dim],
-                   JxW = here.JxW[q];
-      Matrix H = deformation(cell, g);
-      double trace = 0.;
-      for (unsigned int c = 0; c < dim; ++c)
-        trace += H[c * dim + c] -= 1.;
-      SmallStrain<dim> at;
-      if (!set_small_strain(discretization_, histories_, cell, q, here.n_same,
-                            H, at)) {
-        inverted_ = int(cell);
-        break;
-      }
-      volume += JxW;
-      now += JxW * (1. + trace);
-      stored_[cell] += JxW * at.energy;
-      taken_[cell] += JxW * at.plastic;
-      taken_[n_cells + cell] += JxW * at.viscous;
-      peaks_[cell] = std::max(peaks_[cell], finite::square<dim>(at.sigma));
-      finite::subtract_forces<dim>(at.sigma, JxW, g, n, f);
     }
     return {volume, now};
   }
@@ -295,13 +263,14 @@ namespace nsfd
   {
     if (is_rigid(discretization_, cell))
       return {};
-    Matrix F = deformation(cell, at_slot(cell, slot));
-    if (small_) {
-      for (unsigned int c = 0; c < dim; ++c)
-        F[c * dim + c] -= 1.;
-      return small_stress_beside(discretization_, histories_, cell,
-                                 tables(cell).slot_points[slot], slot, F);
-    }
+    if (small_)
+      return small_stress_beside(
+          discretization_, histories_, cell, tables(cell).slot_points[slot],
+          slot,
+          small_gradient<dim>(deformation(cell, at_slot(cell, slot)),
+                              tables(cell).one_dilatation ? &dilatations_[cell]
+                                                          : nullptr));
+    const Matrix F = deformation(cell, at_slot(cell, slot));
     if (histories_.any() && histories_.of(cell))
       return flowing_stress(cell, tables(cell).slot_points[slot], F);
     Voigt<dim> S;

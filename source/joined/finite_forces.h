@@ -25,7 +25,8 @@ namespace nsfd
    *   theta = sum_q JxW_q J_q / sum_q JxW_q
    *
    * In small motions, of scenes with such materials, F is 1 and strains are
-   * linear: small_strain.h. Their cells are fully integrated.
+   * linear: small_strain.h. Bilinear and trilinear cells that flow have the
+   * mean of tr(H) everywhere, the others are fully integrated.
    *
    * Where every rank has all cells each computes its own, and gets those of the
    * others from their ranks.
@@ -88,6 +89,7 @@ namespace nsfd
                                           ///< of the one point
       std::vector<unsigned int> slot_points; ///< nearest points of quadrature
       unsigned int n_same = 0; ///< points of quadrature beside the one point
+      bool one_dilatation = false; ///< of small strain: flow would lock them
     };
 
     const Tables &tables(const std::size_t cell) const

@@ -13,6 +13,21 @@ namespace nsfd
     double plastic = 0., viscous = 0.; ///< of the step, J per volume
   };
 
+  /** H of F = 1 + H; with @p dilatation in place of its own, if that is given:
+      H + (dilatation - tr H)/dim 1. */
+  template <int dim>
+  finite::Matrix<dim> small_gradient(finite::Matrix<dim> F,
+                                     const double *dilatation)
+  {
+    for (unsigned int c = 0; c < dim; ++c)
+      F[c * dim + c] -= 1.;
+    const double more =
+        dilatation ? (*dilatation - finite::trace<dim>(F)) / dim : 0.;
+    for (unsigned int c = 0; c < dim && dilatation; ++c)
+      F[c * dim + c] += more;
+    return F;
+  }
+
   /**
    * Of point @p q at the gradient @p H of the displacement, [component]
    * [direction]: by what the point keeps, which moves on, or by Hooke's law.

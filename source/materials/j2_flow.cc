@@ -42,11 +42,9 @@ namespace nsfd
                  const bool plane_stress, const PlasticInput &plastic)
       : lambda_(young * poisson / ((1. + poisson) * (1. - 2. * poisson))),
         mu_(young / (2. * (1. + poisson))), yield_(plastic.yield_stress),
-        isotropic_(plastic.isotropic), kinematic_(plastic.kinematic),
-        saturation_(plastic.saturation_stress),
-        exponent_(plastic.saturation_exponent), viscosity_(plastic.viscosity),
+        kinematic_(plastic.kinematic), viscosity_(plastic.viscosity),
         rate_exponent_(plastic.rate_exponent), rate_(plastic.reference_rate),
-        plane_stress_(plane_stress)
+        hardening_(young, plastic), plane_stress_(plane_stress)
   {
     if (plane_stress)
       lambda_ = young * poisson / (1. - poisson * poisson);
@@ -101,25 +99,6 @@ namespace nsfd
     return combine(2. / 3. * kinematic_, X, 0., X);
   }
 
-  double J2Flow::hardening(const double p) const
-  {
-    return isotropic_ * p - saturation_ * std::expm1(-exponent_ * p);
-  }
-
-  double J2Flow::hardening_slope(const double p) const
-  {
-    return isotropic_ + saturation_ * exponent_ * std::exp(-exponent_ * p);
-  }
-
-  /** The mean of R over the way from p to p + dp. */
-  double J2Flow::mean_hardening(const double p, const double dp) const
-  {
-    const double x = exponent_ * dp;
-    const double mean_decay =
-        std::exp(-exponent_ * p) * (x > 0. ? -std::expm1(-x) / x : 1.);
-    return isotropic_ * (p + dp / 2.) + saturation_ * (1. - mean_decay);
-  }
-
   double J2Flow::overstress(const double rate) const
   {
     if (viscosity_ == 0.)
@@ -141,12 +120,9 @@ namespace nsfd
   double J2Flow::energy(const Strain &elastic,
                         const InternalVariables &variables) const
   {
-    const double p = variables.equivalent, x = exponent_ * p;
-    const double saturated =
-        x > 0. ? saturation_ / exponent_ * (x + std::expm1(-x)) : 0.;
     return contract<3>(elastic, times_modulus(elastic)) / 2. +
            kinematic_ / 3. * contract<3>(variables.alpha, variables.alpha) +
-           isotropic_ / 2. * p * p + saturated;
+           hardening_.energy(variables.equivalent);
   }
 
   J2Flow::Tangent J2Flow::elastic_tangent(const double theta) const
@@ -177,7 +153,7 @@ namespace nsfd
     if (!std::isfinite(q_trial))
       return false;
     surface.q = q_trial;
-    const double start = yield_ + hardening(p);
+    const double start = yield_ + hardening_.at(p).R;
     if (q_trial <= start || (viscosity_ > 0. && time_step == 0.))
       return true;
     double low = 0., high = std::numeric_limits<double>::infinity();
@@ -200,11 +176,11 @@ namespace nsfd
       surface.flow = x * surface.q;
       q_change /= surface.q;
       const double rate = time_step > 0. ? surface.flow / time_step : 0.;
-      slope = hardening_slope(p + surface.flow);
+      const auto [R, dR] = hardening_.at(p + surface.flow);
+      slope = dR;
       if (viscosity_ > 0.)
         slope += overstress_slope(rate) / time_step;
-      const double left =
-          surface.q - yield_ - hardening(p + surface.flow) - overstress(rate);
+      const double left = surface.q - yield_ - R - overstress(rate);
       (left > 0. ? low : high) = x;
       if (std::abs(left) <= round_off * surface.q)
         break;
@@ -257,8 +233,8 @@ namespace nsfd
     result.numerical = (theta - 0.5) * contract<3>(jump, change);
     if (surface.flow > 0.) {
       const double p = variables.equivalent, dp = surface.flow;
-      const double R_0 = hardening(p), R_1 = hardening(p + dp),
-                   chord = mean_hardening(p, dp) - (R_0 + R_1) / 2.;
+      const double R_0 = hardening_.at(p).R, R_1 = hardening_.at(p + dp).R,
+                   chord = hardening_.mean(p, dp) - (R_0 + R_1) / 2.;
       const double over = contract<3>(surface.normal, eta_start) - yield_ - R_0;
       double missing = std::max(0., -over) / 2.;
       result.plastic = dp * yield_;
@@ -303,13 +279,14 @@ namespace nsfd
       decay += 1.5 * share_[i] * A[i] * decay_[i] / q *
                contract<3>(surface.eta.part[i], surface.eta.part[i]);
     }
-    const double R_0 = hardening(p), R_1 = hardening(p + dp),
-                 mean = mean_hardening(p, dp), chord = mean - (R_0 + R_1) / 2.;
+    const double R_0 = hardening_.at(p).R, mean = hardening_.mean(p, dp);
+    const auto [R_1, slope_1] = hardening_.at(p + dp);
+    const double chord = mean - (R_0 + R_1) / 2.;
     const double below = std::max(0., yield_ + R_0 - contract<3>(N, eta_start));
     const bool with_chord = viscosity_ == 0.;
     const double missing = below / 2. + (with_chord ? chord : 0.);
     const double chord_slope =
-        with_chord ? (R_1 - mean) / dp - hardening_slope(p + dp) / 2. : 0.;
+        with_chord ? (R_1 - mean) / dp - slope_1 / 2. : 0.;
     const double way = contract<3>(direction, change);
     const double share = missing != 0. ? dp * missing / way : 0.;
     for (unsigned int j = 0; j < n_stresses; ++j) {

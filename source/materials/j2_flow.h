@@ -1,5 +1,7 @@
 #pragma once
 
+#include "isotropic_hardening.h"
+
 #include "nsfd/materials/hyperelastic.h"
 
 namespace nsfd
@@ -76,9 +78,6 @@ namespace nsfd
     Strain join(const Parts &parts) const;
     Strain times_modulus(const Strain &strain) const;
     Strain middle(const Strain &alpha) const;
-    double hardening(double p) const;
-    double hardening_slope(double p) const;
-    double mean_hardening(double p, double dp) const;
     double overstress(double rate) const;
     double overstress_slope(double rate) const;
     bool find_surface(const Parts &trial, double p, double time_step,
@@ -87,8 +86,8 @@ namespace nsfd
                      const Strain &change, const Strain &eta_start,
                      double theta, Step &result) const;
 
-    double lambda_, mu_, yield_, isotropic_, kinematic_, saturation_, exponent_,
-        viscosity_, rate_exponent_, rate_;
+    double lambda_, mu_, yield_, kinematic_, viscosity_, rate_exponent_, rate_;
+    IsotropicHardening hardening_;
     bool plane_stress_;
     /// of the two parts of a strain: moduli, shares of them that flow, and
     /// what a unit of flow over q takes from them

@@ -12,26 +12,44 @@ namespace nsfd
     const std::vector<std::string> overstress_names = {
         "viscosity", "rate exponent", "reference rate"};
 
-    /** R(p) = isotropic p + Q (1 - exp(-b p)), X = 2/3 kinematic eps_p. */
+    /** R(p) = isotropic p + Q (1 - exp(-b p)) or a power law; X = 2/3 kinematic
+        eps_p. */
     void read_hardening(SectionReader &reader, PlasticInput &plastic)
     {
       plastic.yield_stress =
           reader.number("yield stress", "", units::pressure, Range::positive(),
                         "Pa, in uniaxial stress, before any flow");
-      plastic.isotropic =
-          reader.number("isotropic hardening modulus", "0", units::pressure,
-                        Range::non_negative(),
-                        "Pa, growth of the yield stress with the flow");
+      const std::string
+          power = "hardening exponent",
+          power_text = "N of the power law strain = yield/E "
+                       "(stress/yield)^(1/N) beyond yield, in place of the "
+                       "other isotropic hardening";
+      const std::string by_power =
+          "the yield stress grows by the power law of `" + power + "`";
+      const bool has_power = reader.optional(power, power_text);
+      if (has_power) {
+        plastic.hardening_exponent = reader.number(
+            power, "", units::none, {1e-6, 1., false, true}, power_text);
+        reader.refuse({"isotropic hardening modulus"}, by_power);
+      } else
+        plastic.isotropic =
+            reader.number("isotropic hardening modulus", "0", units::pressure,
+                          Range::non_negative(),
+                          "Pa, growth of the yield stress with the flow");
       plastic.kinematic = reader.number(
           "kinematic hardening modulus", "0", units::pressure,
           Range::non_negative(),
           "Pa, of the back stress in uniaxial stress; the middle of the "
           "surface follows the flow");
+      const std::string exponent = "saturation exponent";
+      if (has_power) {
+        reader.refuse({"saturation stress", exponent}, by_power);
+        return;
+      }
       plastic.saturation_stress = reader.number(
           "saturation stress", "0", units::pressure, Range::non_negative(),
           "Pa, Q of Q (1 - exp(-b p)), which the yield stress "
           "grows by in the end");
-      const std::string exponent = "saturation exponent";
       if (plastic.saturation_stress == 0.)
         reader.refuse({exponent}, "there is no `saturation stress`");
       else

@@ -106,12 +106,32 @@ end
 
   TEST(ExplicitFlow, WithoutFlowItIsTheLinearStep)
   {
-    without_flow<2>({});
     without_flow<2>(quadratic);
     without_flow<2>(triangles);
     without_flow<2>(stress);
-    without_flow<3>(in_space);
+    without_flow<3>(with(in_space, quadratic));
     without_flow<3>(tetrahedra);
+  }
+
+  // u_x = e x y in two squares of side 2 around (0, 0) and (2, 0): tr(H) = e y,
+  // which has no mean, so that the energy is that of the shear modulus alone,
+  // mu e^2 times the integral of (x^2 + y^2)/2; e^2 K y^2/2 would be added by
+  // cells whose dilatation differs from place to place.
+  TEST(ExplicitFlow, BilinearCellsHaveOneDilatation)
+  {
+    for (const double poisson : {0.3, 0.4999}) {
+      Steps<2> scene(block,
+                     {"Mesh/lower corner=-1, -1", "Mesh/upper corner=3, 1",
+                      "Mesh/cells=2, 1", "Material: soft/yield stress=1e9",
+                      "Material: soft/Poisson ratio=" + std::to_string(poisson),
+                      "Material: soft/initial displacement x=1e-3*x*y",
+                      "Material: soft/initial velocity x=0",
+                      "Material: soft/initial velocity y=0"});
+      scene.show();
+      const double mu = 100. / (2. * (1. + poisson));
+      EXPECT_NEAR(scene.state.energy.elastic, 32. / 3. * mu * 1e-6,
+                  1e-12 * mu * 1e-6);
+    }
   }
 
   template <int dim>

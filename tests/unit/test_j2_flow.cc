@@ -44,6 +44,13 @@ namespace test_j2_flow
     return plastic;
   }
 
+  PlasticInput hardens_by_power(const double N)
+  {
+    PlasticInput plastic = perfect();
+    plastic.hardening_exponent = N;
+    return plastic;
+  }
+
   PlasticInput flows_slowly(const double viscosity, const double exponent)
   {
     PlasticInput plastic = saturates();
@@ -159,6 +166,34 @@ namespace test_j2_flow
     }
     EXPECT_LT(bar.defect, 1e-13);
     EXPECT_LT(std::abs(bar.numerical), 1e-14 * bar.plastic);
+  }
+
+  // strain = yield/E (stress/yield)^(1/N) of a bar beyond yield.
+  TEST(J2Flow, PowerLawHardening)
+  {
+    for (const double N : {0.02, 0.1, 0.5, 0.9}) {
+      SCOPED_TRACE(N);
+      for (const unsigned int n : {1u, 40u}) {
+        Driven bar(hardens_by_power(N));
+        for (unsigned int k = 1; k <= n; ++k) {
+          // up to 100 times the strain of yield
+          const double strain = yield / young * std::pow(100., double(k) / n);
+          const double sigma = yield * std::pow(100., N * k / n);
+          const double p = strain - sigma / young;
+          bar.go(uniaxial(sigma, p));
+          expect_uniaxial(bar.stress, sigma);
+          EXPECT_NEAR(bar.variables.equivalent, p, 1e-10 * p);
+        }
+        // all that was done: the integral of the stress over the way
+        const double total = yield * yield / young *
+                             (0.5 + (std::pow(100., 1. + N) - 1.) / (1. + N));
+        const double stored = bar.flow.energy(
+            sum(bar.strain, -1., bar.variables.alpha), bar.variables);
+        EXPECT_NEAR(stored + bar.plastic, total, 1e-12 * total);
+        EXPECT_LT(bar.defect, 1e-13);
+        EXPECT_LT(std::abs(bar.numerical), 1e-14 * bar.plastic);
+      }
+    }
   }
 
   // Up, down and up again: the surface keeps its size and follows.
@@ -311,6 +346,7 @@ namespace test_j2_flow
       result.push_back({"isotropic" + where, hardens(5e9, 0.), plane});
       result.push_back({"kinematic" + where, hardens(0., 8e9), plane});
       result.push_back({"saturating" + where, saturates(), plane});
+      result.push_back({"power law" + where, hardens_by_power(0.1), plane});
       result.push_back({"viscous" + where, flows_slowly(1e6, 1.), plane});
       result.push_back({"power" + where, flows_slowly(1e7, 4.), plane});
     }
@@ -343,6 +379,22 @@ namespace test_j2_flow
     std::uniform_real_distribution<double> uniform_{0., 1.};
   };
 
+  /** Of the surface in terms of von Mises, after the flow @p p. */
+  double radius_of(const PlasticInput &plastic, const double p)
+  {
+    const double N = plastic.hardening_exponent;
+    if (N == 0.)
+      return yield + plastic.isotropic * p -
+             plastic.saturation_stress *
+                 std::expm1(-plastic.saturation_exponent * p);
+    double low = 1., high = 2. * std::pow(1. + p * young / yield, N) + 2.;
+    for (unsigned int k = 0; k < 200; ++k) { // p grows with the radius
+      const double s = (low + high) / 2.;
+      (yield / young * (std::pow(s, 1. / N) - s) < p ? low : high) = s;
+    }
+    return yield * high;
+  }
+
   TEST(J2Flow, RandomStrainPathsCloseTheBalanceAndGainNothing)
   {
     for (const Case &c : cases()) {
@@ -361,10 +413,7 @@ namespace test_j2_flow
             ASSERT_GE(point.step.numerical,
                       theta == 0.5 ? 0. : -1e-12 * point.largest);
             const double radius =
-                yield + c.plastic.isotropic * point.variables.equivalent -
-                c.plastic.saturation_stress *
-                    std::expm1(-c.plastic.saturation_exponent *
-                               point.variables.equivalent);
+                radius_of(c.plastic, point.variables.equivalent);
             const Strain centre =
                 sum({}, 2. / 3. * c.plastic.kinematic, point.variables.alpha);
             ASSERT_LT(von_mises(sum(point.stress, -1., centre)),

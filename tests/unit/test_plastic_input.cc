@@ -117,6 +117,15 @@ end
       InputErrors errors; // four entries too many
       EXPECT_EQ(read(steel, {at + "model=j2 plastic"}, errors), nullptr);
       EXPECT_EQ(errors.n_errors(), 3u) << errors.report();
+      InputErrors power; // in place of the linear and the saturating part
+      EXPECT_EQ(read(steel, {at + "hardening exponent=0.1"}, power), nullptr);
+      EXPECT_EQ(power.n_errors(), 3u) << power.report();
+      EXPECT_NE(power.report().find("grows by the power law"),
+                std::string::npos)
+          << power.report();
+      InputErrors linear; // N = 1 would be an elastic bar
+      EXPECT_EQ(read(steel, {at + "hardening exponent=1"}, linear), nullptr);
+      EXPECT_EQ(linear.n_errors(), 4u) << linear.report();
       InputErrors elastic;
       EXPECT_EQ(read(steel, {at + "model=linear elastic"}, elastic), nullptr);
       EXPECT_EQ(elastic.n_errors(), 8u) << elastic.report();

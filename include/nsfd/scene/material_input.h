@@ -119,9 +119,10 @@ namespace nsfd
     double yield_stress = 0., isotropic = 0., kinematic = 0.; ///< Pa
     double saturation_stress = 0.;                            ///< Q, Pa
     double saturation_exponent = 0.;                          ///< b
-    double viscosity = 0.;      ///< Pa s, at the reference rate; 0: none
-    double rate_exponent = 1.;  ///< n
-    double reference_rate = 1.; ///< r, 1/s; of no effect where n = 1
+    double hardening_exponent = 0.; ///< N of a power law in place of R; 0: none
+    double viscosity = 0.;          ///< Pa s, at the reference rate; 0: none
+    double rate_exponent = 1.;      ///< n
+    double reference_rate = 1.;     ///< r, 1/s; of no effect where n = 1
   };
 
   struct MaterialInput {

@@ -29,7 +29,8 @@ namespace nsfd
              "strain");
       const MaterialInput &material = input.materials[0];
       const PlasticInput &plastic = *material.plastic;
-      demand(plastic.viscosity == 0. && plastic.saturation_stress == 0.,
+      demand(plastic.viscosity == 0. && plastic.saturation_stress == 0. &&
+                 plastic.hardening_exponent == 0.,
              "the material hardens linearly, without viscosity");
       const double E = material.young, nu = material.poisson,
                    rho = material.density,

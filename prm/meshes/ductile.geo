@@ -1,0 +1,56 @@
+// The upper half of a body around a crack along y = 0, in quadrilaterals: a band from
+// -w to l along x of squares of the size s, a metal around it in which cells grow by a
+// share g of the distance, and the rest out to a half circle of the radius R.
+If (!Exists(s)) s = 0.08; EndIf
+If (!Exists(l)) l = 5; EndIf  // the band ends there
+If (!Exists(a)) a = 7; EndIf  // the metal reaches that far from the middle of the band
+If (!Exists(g)) g = 0.25; EndIf
+w = 0.5;
+b = 4 * s;
+R = 50;
+c = (l - w) / 2;
+n_x = Round((l + w) / s / 2);
+Point(1) = {-w, 0, 0};
+Point(2) = {l, 0, 0};
+Point(3) = {l, b, 0};
+Point(4) = {-w, b, 0};
+Point(5) = {c, 0, 0};
+Point(6) = {c + a, 0, 0};
+Point(7) = {c, a, 0};
+Point(8) = {c - a, 0, 0};
+Point(9) = {R, 0, 0};
+Point(10) = {0, R, 0};
+Point(11) = {-R, 0, 0};
+Point(12) = {0, 0, 0};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Line(5) = {2, 6};
+Circle(6) = {6, 5, 7};
+Circle(7) = {7, 5, 8};
+Line(8) = {8, 1};
+Line(9) = {6, 9};
+Circle(10) = {9, 12, 10};
+Circle(11) = {10, 12, 11};
+Line(12) = {11, 8};
+Transfinite Curve{1, 3} = n_x + 1;
+Transfinite Curve{2, 4} = 3;
+Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1};
+Transfinite Surface{1};
+Curve Loop(2) = {5, 6, 7, 8, -4, -3, -2};
+Plane Surface(2) = {2};
+Curve Loop(3) = {9, 10, 11, 12, -7, -6};
+Plane Surface(3) = {3};
+Recombine Surface{1, 2, 3};
+Field[1] = MathEval; // the cells are halved at the end
+Field[1].F = Sprintf("%g + %g * Sqrt(Max(0, Abs(x - %g) - %g)^2 + Max(0, y - %g)^2)", 2 * s, 2 * g, c, c + w, b);
+Background Field = 1;
+Mesh.MeshSizeFromPoints = 0;
+Mesh.MeshSizeExtendFromBoundary = 0;
+Mesh.Algorithm = 6;
+Mesh.SubdivisionAlgorithm = 1;
+Physical Surface("metal") = {1, 2};
+Physical Surface("around") = {3};
+Physical Curve("outer") = {10, 11};

@@ -1,0 +1,3 @@
+// Cells of half the size, see ductile.geo.
+s = 0.04;
+Include "ductile.geo";
