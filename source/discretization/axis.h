@@ -3,11 +3,14 @@
 #include "body_shape.h"
 
 #include <algorithm>
+#include <vector>
 
 // Axisymmetric scenes: x is the radius, and the axis is at x = 0.
 
 namespace nsfd
 {
+  struct DiscretizationInput;
+
   /** A face of a triangulation that has no area: where bodies are full. */
   template <typename Face>
   bool is_on_axis(const Face &face)
@@ -27,12 +30,42 @@ namespace nsfd
   }
 
   /**
+   * What the measure of point @p q of a face is times, whose points have these
+   * @p radii. Where they are the two nodes of a straight face, the mean of r
+   * weighted by the polynomial of the node: with the radius itself one on the
+   * axis would have no area, and it has a mass.
+   */
+  inline double radius_of_point(const std::vector<double> &radii,
+                                const std::size_t q, const bool at_nodes)
+  {
+    return at_nodes && radii.size() == 2 ? (2. * radii[q] + radii[1 - q]) / 3.
+                                         : radii[q];
+  }
+
+  /** Of an axisymmetric scene: the points from @p first on, which are those of
+      one face with the weights of the half-plane. */
+  template <int dim>
+  void weigh_rings(const DiscretizationInput &input, std::size_t first,
+                   InterfacePoints<dim> &points);
+
+  /**
    * r makes integrands one degree higher, and u_r^2 / r is no polynomial: one
    * point more than the @p n per direction of other scenes.
    */
   template <int dim>
   dealii::Quadrature<dim> ring_quadrature(const dealii::ReferenceCell &cell,
                                           unsigned int n);
+
+  /** The same at a place of the cell of a radial motion of one node, whose
+      shape function has this @p value and @p gradient there, 1/m. */
+  template <int dim>
+  double hoop_of_node(const BodyShape<dim> &shape,
+                      const dealii::Point<dim> &relative, const double value,
+                      const dealii::Tensor<1, dim> &gradient)
+  {
+    const double r = radius_at(shape, relative);
+    return r > axis_tolerance * shape.height ? value / r : gradient[0];
+  }
 
   /** The only rigid one, by node and component. */
   template <int dim>

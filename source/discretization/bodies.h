@@ -132,7 +132,9 @@ namespace nsfd
     /// to the last bit, all points of a face have one frame
     bool frame_of_face = false;
     std::vector<double> weight; ///< JxW in m (2D) or m^2
-    bool axisymmetric = false;  ///< weights are times the radius, in m^2
+    /// of axisymmetric scenes, whose weights are in m^2: JxW in the half-plane,
+    /// m; else empty
+    std::vector<double> lengths;
     /// points of one face are consecutive
     struct Face {
       unsigned int first = 0, count = 0;
@@ -166,8 +168,7 @@ namespace nsfd
         half-plane, in m. */
     double measure(const std::size_t point) const
     {
-      return axisymmetric ? weight[point] / position[point * dim]
-                          : weight[point];
+      return lengths.empty() ? weight[point] : lengths[point];
     }
     /** dim x dim per point. */
     std::vector<double> frames_of_points() const;

@@ -150,11 +150,7 @@ namespace nsfd
     {
       Block weighted = body.traction;
       for (unsigned int k = 0; k < weighted.rows; ++k) {
-        // on the axis round-off is on both sides of 0
-        const double radius =
-            radius_or_one(shape, shape.slot_positions[k / dim]);
-        const double weight =
-            shape.slot_normals[k / dim].norm() * std::max(0., radius);
+        const double weight = slot_area(shape, k / dim);
         for (unsigned int j = 0; j < weighted.cols; ++j)
           weighted(k, j) *= std::sqrt(weight);
       }
@@ -171,7 +167,7 @@ namespace nsfd
             input.discretization, element.reference_cell().is_simplex())),
         no_blocks_(input.time.scheme.at_nodes &&
                    element.reference_cell().is_simplex() &&
-                   input.discretization.degree == 1 &&
+                   input.discretization.degree == 1 && !input.axisymmetric &&
                    std::none_of(input.materials.begin(), input.materials.end(),
                                 [](const MaterialInput &material) {
                                   return material.rigid ||
@@ -371,6 +367,8 @@ namespace nsfd
           shape.slot_faces.push_back(f);
         }
     }
+    if (is_axisymmetric(shape))
+      set_slot_radii(shape);
   }
 
   template <int dim>
@@ -446,7 +444,6 @@ namespace nsfd
   {
     const unsigned int n = shape.n_nodes;
     Block traction(body.n_slots * dim, n * dim);
-    const std::vector<double> hoop = hoop_at_slots(shape);
     for (unsigned int s = 0; s < body.n_slots; ++s) {
       const auto &place = shape.slot_places[s];
       const auto &law = at_place(local, shape.JxW.size() + s);
@@ -464,10 +461,12 @@ namespace nsfd
         for (unsigned int c = 0; c < dim; ++c)
           for (unsigned int d = 0; d < dim; ++d)
             traction(s * dim + c, i * dim + d) = law.coupling(c, d, normal, g);
-        if (is_axisymmetric(shape))
-          for (unsigned int c = 0; c < dim; ++c)
-            traction(s * dim + c, i * dim) +=
-                law.lambda * hoop[s * n + i] * normal[c];
+        if (!is_axisymmetric(shape))
+          continue;
+        const double hoop = hoop_of_node(shape, shape.slot_positions[s],
+                                         element_.shape_value(i, place), g);
+        for (unsigned int c = 0; c < dim; ++c)
+          traction(s * dim + c, i * dim) += law.lambda * hoop * normal[c];
       }
     }
     hold_columns(shape, traction);

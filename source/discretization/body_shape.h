@@ -53,6 +53,8 @@ namespace nsfd
     std::vector<dealii::Tensor<1, dim>> slot_normals; ///< outward, times w
     std::vector<dealii::Point<dim>> slot_places;      ///< in the reference cell
     std::vector<unsigned int> slot_faces;
+    /// of axisymmetric scenes: what the area of a slot is times, see axis.h
+    std::vector<double> slot_radii;
     std::vector<double> corner_values; ///< corner x node
     double volume = 0.;                ///< of axisymmetric scenes per radian
     dealii::Point<dim> centre;
@@ -87,6 +89,14 @@ namespace nsfd
                        const dealii::Point<dim> &relative)
   {
     return is_axisymmetric(shape) ? radius_at(shape, relative) : 1.;
+  }
+
+  /** Area of a slot, times its weight. */
+  template <int dim>
+  double slot_area(const BodyShape<dim> &shape, const std::size_t slot)
+  {
+    const double area = shape.slot_normals[slot].norm();
+    return shape.slot_radii.empty() ? area : area * shape.slot_radii[slot];
   }
 
   /** The shape of a body: kept by its class, or made when it is asked for, in
@@ -209,8 +219,7 @@ namespace nsfd
     void add_hoop(const BodyShape<dim> &shape,
                   const std::vector<LinearElasticity<dim>> &local,
                   Block &stiffness) const;
-    /** Those strains at the slots, slot x node; empty if there are none. */
-    std::vector<double> hoop_at_slots(const BodyShape<dim> &shape) const;
+    void set_slot_radii(BodyShape<dim> &shape) const;
     /** Of @p local at the positions of the quadrature. */
     Block stiffness(const BodyShape<dim> &shape,
                     const std::vector<LinearElasticity<dim>> &local) const;

@@ -154,9 +154,10 @@ namespace nsfd
         for (const auto &axis : axes)
           for (unsigned int c = 0; c < dim; ++c)
             frames_.push_back(axis[c]);
-        points.weight.push_back(measure * quadrature.weight(q) *
-                                (input_.axisymmetric ? position[0] : 1.));
+        points.weight.push_back(measure * quadrature.weight(q));
       }
+      if (input_.axisymmetric)
+        weigh_rings(input_.discretization, result.face.first, points);
       add_frames(frames_);
       return result;
     }
@@ -403,6 +404,8 @@ namespace nsfd
       move(found.position, dim, false, points.position);
       move(found.frames, dim * dim, points.frame_of_face, points.frames);
       move(found.weight, 1, false, points.weight);
+      if (!found.lengths.empty())
+        move(found.lengths, 1, false, points.lengths);
       unsigned int first = 0;
       for (auto face = faces.begin(); face != faces.end(); ++face) {
         if (face == others)
@@ -466,7 +469,6 @@ namespace nsfd
       result.origins.insert(result.origins.end(), face.face.count, face.origin);
       points.faces.push_back(face.face);
     }
-    points.axisymmetric = input.axisymmetric;
     set_neighbors(points);
     return result;
   }

@@ -1,8 +1,11 @@
 #include "axis.h"
 
+#include "nsfd/scene/scene_input.h"
+
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe.h>
 
+#include <algorithm>
 #include <vector>
 
 // What is different in the shape and the blocks of a ring.
@@ -18,6 +21,21 @@ namespace nsfd
     if (cell.is_simplex())
       return QWitherdenVincentSimplex<dim>(n + 1);
     return QGauss<dim>(n + 1);
+  }
+
+  template <int dim>
+  void weigh_rings(const DiscretizationInput &input, const std::size_t first,
+                   InterfacePoints<dim> &points)
+  {
+    const bool at_nodes = input.interface_quadrature == "gauss lobatto";
+    std::vector<double> radii;
+    for (std::size_t i = first; i < points.n_points; ++i)
+      radii.push_back(points.position[i * dim]);
+    for (std::size_t q = 0; q < radii.size(); ++q) {
+      double &weight = points.weight[first + q];
+      points.lengths.push_back(weight);
+      weight *= radius_of_point(radii, q, at_nodes);
+    }
   }
 
   /** Height and centre are those in the half-plane. */
@@ -65,32 +83,31 @@ namespace nsfd
   }
 
   template <int dim>
-  std::vector<double>
-  ClassBuilder<dim>::hoop_at_slots(const BodyShape<dim> &shape) const
+  void ClassBuilder<dim>::set_slot_radii(BodyShape<dim> &shape) const
   {
-    std::vector<double> hoop;
-    if (!is_axisymmetric(shape))
-      return hoop;
-    for (std::size_t s = 0; s < shape.slot_places.size(); ++s) {
-      const double r = radius_at(shape, shape.slot_positions[s]);
-      // on the axis no point is and no node moves
-      const bool is_off = r > axis_tolerance * shape.height;
-      for (unsigned int i = 0; i < shape.n_nodes; ++i)
-        hoop.push_back(
-            is_off ? element_.shape_value(i, shape.slot_places[s]) / r : 0.);
+    const bool at_nodes =
+        input_.discretization.interface_quadrature == "gauss lobatto";
+    const std::size_t n = face_rule_.size();
+    std::vector<double> radii(n); // of a face, or of a part of it
+    for (std::size_t s = 0; s < shape.slot_positions.size(); s += n) {
+      // on the axis round-off is on both sides of 0
+      for (std::size_t q = 0; q < n; ++q)
+        radii[q] = std::max(0., radius_at(shape, shape.slot_positions[s + q]));
+      for (std::size_t q = 0; q < n; ++q)
+        shape.slot_radii.push_back(radius_of_point(radii, q, at_nodes));
     }
-    return hoop;
   }
 
 #define NSFD_INSTANTIATE(dim)                                                  \
+  template void weigh_rings(const DiscretizationInput &, std::size_t,          \
+                            InterfacePoints<dim> &);                           \
   template Quadrature<dim> ring_quadrature(const ReferenceCell &,              \
                                            unsigned int);                      \
   template void ClassBuilder<dim>::set_axis(BodyShape<dim> &) const;           \
   template void ClassBuilder<dim>::add_hoop(                                   \
       const BodyShape<dim> &, const std::vector<LinearElasticity<dim>> &,      \
       Block &) const;                                                          \
-  template std::vector<double> ClassBuilder<dim>::hoop_at_slots(               \
-      const BodyShape<dim> &) const
+  template void ClassBuilder<dim>::set_slot_radii(BodyShape<dim> &) const
   NSFD_INSTANTIATE(2);
   NSFD_INSTANTIATE(3);
 #undef NSFD_INSTANTIATE

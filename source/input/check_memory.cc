@@ -41,7 +41,8 @@ namespace nsfd
           std::pow(double(scene.discretization.interface_points), dim - 1.);
       const double mesh = dim == 2 ? 600. : 1200.;
       if (scene.time.scheme.at_nodes) // joined cells have no blocks
-        return mesh + 650. * n_points;
+        return mesh + 650. * n_points +
+               (scene.axisymmetric ? 6500. : 0.); // but rings have
       const double point = (dim == 2 ? 600. : 1200.) + 16. * n_unknowns;
       const bool iterates =
           !scene.statics && scene.discretization.degree == 1 &&

@@ -38,9 +38,17 @@ namespace nsfd
                                const SceneInput &scene)
     {
       const DiscretizationInput &input = scene.discretization;
-      if (scene.time.scheme.at_nodes)
-        return; // the scheme is refused, and has entries of its own
       SectionReader reader(file.open("Discretization"), errors);
+      if (scene.time.scheme.at_nodes) {
+        if (input.degree > 1)
+          reader.error("degree",
+                       fmt::format("degree = {} with scheme = explicit: nodes "
+                                   "on the axis of plane = axisymmetric would "
+                                   "have no lumped mass",
+                                   input.degree),
+                       "write 1, or take scheme = moreau-jean");
+        return; // points are at the nodes, which have areas
+      }
       if (input.interface_quadrature == "gauss lobatto")
         reader.error("interface quadrature",
                      "interface quadrature = gauss lobatto has points at the "
@@ -94,12 +102,6 @@ namespace nsfd
                          "axisymmetric: its solution is that of the plane",
                          "leave the section out");
     }
-    SectionReader time(file.open("Time"), errors);
-    if (scene.time.scheme.at_nodes)
-      time.error("scheme",
-                 "scheme = explicit is not available for plane = axisymmetric: "
-                 "the forces of joined cells are those of the plane",
-                 "write scheme = moreau-jean");
     if (scene.gravity[0] != 0.) {
       SectionReader loads(file.open("Loads"), errors);
       loads.error(

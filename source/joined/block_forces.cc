@@ -5,6 +5,7 @@
 #include "finite_forces.h"
 #include "tensor_forces.h"
 
+#include "discretization/axis.h"
 #include "discretization/cells.h"
 #include "nsfd/scene/scene_input.h"
 
@@ -12,6 +13,22 @@
 
 namespace nsfd
 {
+  namespace
+  {
+    /** To the mean divergence of motions of the nodes, that of the strain along
+        the hoops. */
+    template <int dim>
+    void add_hoop(const BodyShape<dim> &shape, std::vector<double> &mean)
+    {
+      for (unsigned int q = 0; q < shape.JxW.size(); ++q)
+        for (unsigned int i = 0; i < shape.n_nodes; ++i)
+          mean[i * dim] += shape.JxW[q] / shape.volume *
+                           shape.values[q * shape.n_nodes + i] /
+                           radius_at(shape, shape.positions[q]);
+      hold_nodes(shape, mean.data());
+    }
+  } // namespace
+
   template <int dim>
   BlockForces<dim>::BlockForces(const Discretization<dim> &discretization,
                                 const JoinedMesh<dim> &mesh,
@@ -26,6 +43,8 @@ namespace nsfd
         for (unsigned int j = 0; j < mean.size(); ++j)
           mean[j] += shape.JxW[q] / shape.volume *
                      shape.gradients[q * shape.n_nodes + j / dim][j % dim];
+      if (is_axisymmetric(shape))
+        add_hoop(shape, mean);
     }
   }
 
@@ -118,6 +137,10 @@ namespace nsfd
       const auto everywhere = [&](const bool here) {
         return ghosts ? !ghosts->anywhere(!here) : here;
       };
+      // only blocks have the strain along hoops
+      if (discretization.input().axisymmetric)
+        return std::make_unique<BlockForces<dim>>(discretization, mesh,
+                                                  std::move(front));
       if (everywhere(ConstantStrainForces<dim>::fits(discretization)))
         return std::make_unique<ConstantStrainForces<dim>>(discretization,
                                                            std::move(front));

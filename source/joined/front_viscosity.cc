@@ -5,6 +5,7 @@
 #include "discretization/cells.h"
 #include "discretization/point_places.h"
 #include "nsfd/core/archive.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
 #include <cmath>
@@ -89,10 +90,11 @@ namespace nsfd
     const Cells<dim> &cells = discretization.cells();
     const std::size_t n = cells.bodies.size();
     const auto frequency = frequencies_of_bodies(cells);
+    const double n_strained = discretization.input().axisymmetric ? 3 : dim;
     for (std::size_t b = 0; b < n; ++b) {
       double bulk = 0.;
       for (const auto &local : cells.class_shape(b).elasticity)
-        bulk = std::max(bulk, local.lambda + 2. * local.mu / dim);
+        bulk = std::max(bulk, local.lambda + 2. * local.mu / n_strained);
       eta_.push_back(frequency[b] > 0. ? 2. * share * bulk / frequency[b] : 0.);
     }
     tension.assign(n, 0.);

@@ -217,8 +217,7 @@ namespace nsfd
       const unsigned int b = slots[k].body, s = slots[k].slot;
       const Sampler<dim> &sampler = mesh_.slots_of(b);
       const auto shape = discretization_.cells().shape(b);
-      const double weight = shape->slot_normals[s].norm() *
-                            radius_or_one(*shape, shape->slot_positions[s]);
+      const double weight = slot_area(*shape, s);
       if (!motion_.state()) {
         terms[k] = weight;
         continue;

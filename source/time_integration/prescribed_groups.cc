@@ -1,15 +1,39 @@
 #include "prescribed_groups.h"
 
+#include "discretization/cells.h"
+#include "nsfd/scene/scene_input.h"
+
 #include <algorithm>
 
 namespace nsfd
 {
+  namespace
+  {
+    /** Of an axisymmetric scene. */
+    template <int dim>
+    std::vector<unsigned int>
+    corners_on_axis(const Discretization<dim> &discretization)
+    {
+      std::vector<unsigned int> corners;
+      const Cells<dim> &cells = discretization.cells();
+      if (discretization.input().axisymmetric)
+        for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
+          const auto &on_axis = cells.class_shape(b).on_axis;
+          for (std::size_t i = 0; i < on_axis.size(); ++i)
+            if (on_axis[i])
+              corners.push_back(unsigned(cells.first_node[b] + i));
+        }
+      return corners;
+    }
+  } // namespace
+
   template <int dim>
   PrescribedGroups<dim>::PrescribedGroups(
       const SceneInput &input, const Discretization<dim> &discretization,
       const JoinedMesh<dim> &mesh)
       : discretization_(discretization), mesh_(mesh),
         motion_(input, discretization),
+        on_axis_(corners_on_axis(discretization)),
         reactions_(discretization.driven_boundaries().size() * dim, 0.)
   {
   }
@@ -28,6 +52,14 @@ namespace nsfd
     for (std::size_t group = 0; group < rigid.size(); ++group)
       if (rigid[group])
         row_of_group_[group] = n_rows++;
+    radial_.clear();
+    for (const unsigned int corner : on_axis_) {
+      const unsigned int group = groups.of(corner);
+      if (mask_[group] & 1u)
+        continue;
+      mask_[group] |= 1u;
+      radial_.push_back(group);
+    }
     for (std::size_t i = 0; i < origins.size(); ++i) {
       if (origins[i].kind != PointOrigin::Kind::motion)
         continue;
@@ -68,6 +100,8 @@ namespace nsfd
       row.given = kick * (forces[k] + (loads.empty() ? 0. : loads[k]));
       groups.velocity[k] = velocity(row, time, h, groups);
     }
+    for (const unsigned int group : radial_)
+      groups.velocity[std::size_t(group) * dim] = 0.;
   }
 
   template <int dim>

@@ -19,7 +19,8 @@ namespace nsfd
     double given = 0.; ///< impulse of the forces in the step, N s
   };
 
-  /** Components of groups of corners whose motion is prescribed. */
+  /** Components of groups of corners whose motion is prescribed: by supports,
+      and on the axis of an axisymmetric scene, where nothing moves radially. */
   template <int dim>
   class PrescribedGroups
   {
@@ -88,6 +89,8 @@ namespace nsfd
     const DrivenMotion<dim> motion_;
     LoadClock clock_;
     std::vector<PrescribedRow> all_, rigid_;
+    const std::vector<unsigned int> on_axis_; ///< corners
+    std::vector<unsigned int> radial_;        ///< groups of these
     std::vector<std::uint8_t> mask_;
     std::vector<int> row_of_group_;
     std::vector<double> rows_, reactions_, terms_;
