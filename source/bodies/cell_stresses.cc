@@ -1,5 +1,6 @@
 #include "cell_stresses.h"
 
+#include "discretization/axis.h"
 #include "discretization/body_shape.h"
 #include "discretization/cell_sampler.h"
 #include "discretization/cells.h"
@@ -22,12 +23,17 @@ namespace nsfd
     const SceneInput &input = discretization.input();
     if (!input.has_history())
       return;
-    for (const MaterialInput &material : input.materials)
+    for (const MaterialInput &material : input.materials) {
+      const bool keeps = material.kind == MaterialKind::history_dependent;
       materials_.push_back(
-          material.kind == MaterialKind::history_dependent
-              ? material.model->history_dependent<dim>(
-                    material, input.large_motion, input.plane_stress)
-              : nullptr);
+          keeps ? material.model->history_dependent<dim>(
+                      material, input.large_motion, input.plane_stress)
+                : nullptr);
+      if (input.axisymmetric)
+        of_rings_.push_back(keeps ? material.model->history_dependent<3>(
+                                        material, input.large_motion, false)
+                                  : nullptr);
+    }
     first_ = first_histories(discretization);
   }
 
@@ -47,9 +53,53 @@ namespace nsfd
                                            const unsigned int q) const
   {
     return state_.material_history.data() + first_[body] +
-           q * materials_[discretization_.cells().body_class(body).material]
-                   ->n_history();
+           q * n_history(discretization_.cells().body_class(body).material);
   }
+
+  template <int dim>
+  unsigned int CellStresses<dim>::n_history(const unsigned int material) const
+  {
+    return of_rings_.empty() ? materials_[material]->n_history()
+                             : of_rings_[material]->n_history();
+  }
+
+  template <int dim>
+  double CellStresses<dim>::plastic_strain(const unsigned int body,
+                                           const unsigned int q) const
+  {
+    const unsigned int m = discretization_.cells().body_class(body).material;
+    return of_rings_.empty()
+               ? materials_[m]->equivalent_strain(history(body, q))
+               : of_rings_[m]->equivalent_strain(history(body, q));
+  }
+
+  namespace
+  {
+    /** F = 1 + gradient becomes (dilatation / det F)^(1/dim) F. */
+    template <int dim>
+    void strain_by(const double dilatation, double *gradient)
+    {
+      for (unsigned int c = 0; c < dim; ++c)
+        gradient[c * dim + c] += 1.;
+      const double share =
+          std::pow(dilatation / jacobian<dim>(gradient), 1. / dim);
+      for (unsigned int k = 0; k < dim * dim; ++k)
+        gradient[k] *= share;
+      for (unsigned int c = 0; c < dim; ++c)
+        gradient[c * dim + c] -= 1.;
+    }
+
+    /** Of a ring at a point of its quadrature, from nodal displacements. */
+    template <int dim>
+    double hoop_at(const BodyShape<dim> &shape, const unsigned int q,
+                   const double *u)
+    {
+      double radial = 0.;
+      for (unsigned int i = 0; i < shape.n_nodes; ++i)
+        radial += shape.values[q * shape.n_nodes + i] * u[i * dim];
+      return radial / radius_at(shape, shape.positions[q]);
+    }
+  } // namespace
 
   template <int dim>
   double CellStresses<dim>::dilatation(const BodyShape<dim> &shape,
@@ -68,7 +118,9 @@ namespace nsfd
           for (unsigned int d = 0; d < dim; ++d)
             F[c * dim + d] +=
                 u[i * dim + c] * shape.gradients[q * shape.n_nodes + i][d];
-      now += shape.JxW[q] * jacobian<dim>(F);
+      const double hoops =
+          is_axisymmetric(shape) ? 1. + hoop_at(shape, q, u) : 1.;
+      now += shape.JxW[q] * jacobian<dim>(F) * hoops;
       volume += shape.JxW[q];
     }
     return now / volume;
@@ -77,22 +129,21 @@ namespace nsfd
   template <int dim>
   typename CellStresses<dim>::Stress
   CellStresses<dim>::stress(const unsigned int body, const unsigned int q,
-                            const double dilatation,
-                            const double *gradient) const
+                            const double dilatation, const double *gradient,
+                            const double hoop) const
   {
+    const unsigned int m = discretization_.cells().body_class(body).material;
+    if (!of_rings_.empty()) {
+      auto F = with_hoop(gradient, hoop);
+      if (dilatation > 0.)
+        strain_by<3>(dilatation, F.data());
+      return of_rings_[m]->stress(F.data(), history(body, q));
+    }
     double F[dim * dim];
     std::copy_n(gradient, dim * dim, F);
-    if (dilatation > 0.) {
-      for (unsigned int c = 0; c < dim; ++c)
-        F[c * dim + c] += 1.;
-      const double share = std::pow(dilatation / jacobian<dim>(F), 1. / dim);
-      for (double &x : F)
-        x *= share;
-      for (unsigned int c = 0; c < dim; ++c)
-        F[c * dim + c] -= 1.;
-    }
-    return materials_[discretization_.cells().body_class(body).material]
-        ->stress(F, history(body, q));
+    if (dilatation > 0.)
+      strain_by<dim>(dilatation, F);
+    return materials_[m]->stress(F, history(body, q));
   }
 
   template <int dim>
@@ -112,7 +163,11 @@ namespace nsfd
     const unsigned int q = point_++;
     if (point_ == discretization_.cells().class_shape(body).JxW.size())
       point_ = 0; // the next visit of all may begin here
-    return stress(body, q, dilatation_, gradient);
+    const double hoop =
+        of_rings_.empty()
+            ? 0.
+            : hoop_strain(x, value, gradient, discretization_.cell_size());
+    return stress(body, q, dilatation_, gradient, hoop);
   }
 
   template <int dim>
@@ -150,8 +205,6 @@ namespace nsfd
     constexpr unsigned int width = 7;
     const auto of_body = discretization_.cells().shape(body);
     const BodyShape<dim> &shape = *of_body;
-    const auto &material =
-        *materials_[discretization_.cells().body_class(body).material];
     const unsigned int n = shape.n_nodes;
     const double *u =
         nodal.data() + discretization_.cells().first_node[body] * dim;
@@ -164,14 +217,15 @@ namespace nsfd
           for (unsigned int d = 0; d < dim; ++d)
             gradient[c * dim + d] +=
                 u[i * dim + c] * shape.gradients[q * n + i][d];
-      const Stress sigma = stress(body, q, mean, gradient);
+      const double hoop = of_rings_.empty() ? 0. : hoop_at(shape, q, u);
+      const Stress sigma = stress(body, q, mean, gradient, hoop);
       for (unsigned int i = 0; i < n; ++i) {
         const double N = shape.JxW[q] * shape.values[q * n + i];
         for (unsigned int j = 0; j < n; ++j)
           mass(i, j) += N * shape.values[q * n + j];
         for (unsigned int k = 0; k < 6; ++k)
           moments(i, k) += N * sigma[k];
-        moments(i, 6) += N * material.equivalent_strain(history(body, q));
+        moments(i, 6) += N * plastic_strain(body, q);
       }
     }
     Block identity(n, n);

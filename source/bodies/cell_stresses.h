@@ -68,11 +68,15 @@ namespace nsfd
         displacements @p u: see FiniteForces; 0: they stay what they are. */
     double dilatation(const BodyShape<dim> &shape, const double *u) const;
     Stress stress(unsigned int body, unsigned int q, double dilatation,
-                  const double *gradient) const;
+                  const double *gradient, double hoop) const;
+    unsigned int n_history(unsigned int material) const;
+    double plastic_strain(unsigned int body, unsigned int q) const;
 
     const Discretization<dim> &discretization_;
     const State &state_;
+    /// by material; of axisymmetric scenes the second ones, in space
     std::vector<std::unique_ptr<const HistoryMaterial<dim>>> materials_;
+    std::vector<std::unique_ptr<const HistoryMaterial<3>>> of_rings_;
     std::vector<std::size_t> first_;    ///< by cell; empty: nothing keeps
     unsigned int body_ = 0, point_ = 0; ///< visited next
     double dilatation_ = 0.;            ///< there

@@ -3,6 +3,7 @@
 #include "body_shape.h"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 // Axisymmetric scenes: x is the radius, and the axis is at x = 0.
@@ -56,7 +57,16 @@ namespace nsfd
   dealii::Quadrature<dim> ring_quadrature(const dealii::ReferenceCell &cell,
                                           unsigned int n);
 
-  /** The same at a place of the cell of a radial motion of one node, whose
+  /** The gradient of a displacement of a ring in space, 3 x 3, from that in the
+      plane. */
+  inline std::array<double, 9> with_hoop(const double *gradient,
+                                         const double hoop)
+  {
+    return {{gradient[0], gradient[1], 0., gradient[2], gradient[3], 0., 0., 0.,
+             hoop}};
+  }
+
+  /** u_r / r at a place of the cell of a radial motion of one node, whose
       shape function has this @p value and @p gradient there, 1/m. */
   template <int dim>
   double hoop_of_node(const BodyShape<dim> &shape,

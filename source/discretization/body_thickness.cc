@@ -2,6 +2,7 @@
 
 #include "cell_geometry.h"
 #include "cells.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <deal.II/fe/fe.h>
 
@@ -61,7 +62,8 @@ namespace nsfd
       };
       for (unsigned int b = 0; b < discretization.bodies().size(); ++b) {
         BodyMeasures &body = result[number(b)];
-        body.volume += discretization.cells().volume(b);
+        if (!discretization.input().axisymmetric) // whose cells are rings
+          body.volume += discretization.cells().volume(b);
         body.width =
             std::min(body.width,
                      width<dim>(reference, discretization.cells().corners[b]));

@@ -325,6 +325,11 @@ namespace nsfd
     const auto &material = input_->materials[cells_->body_class(body).material];
     if (material.rigid)
       return {};
+    if (input_->axisymmetric && material.kind == MaterialKind::finite_strain)
+      return cauchy_stress<3>(
+          material, false,
+          with_hoop(gradient, hoop_strain(x, value, gradient, cell_size_))
+              .data());
     if (material.kind == MaterialKind::finite_strain)
       return cauchy_stress<dim>(material, input_->plane_stress, gradient);
     const auto &shape = cells_->class_shape(body);

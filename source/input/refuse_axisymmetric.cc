@@ -15,8 +15,9 @@ namespace nsfd
       for (std::size_t m = 0; m < scene.materials.size(); ++m) {
         const MaterialInput &material = scene.materials[m];
         SectionReader reader(*blocks[m], errors);
-        if (material.kind == MaterialKind::small_strain &&
-            material.is_isotropic())
+        if (material.kind == MaterialKind::small_strain
+                ? material.is_isotropic()
+                : !material.rigid && scene.time.scheme.at_nodes)
           continue;
         reader.error(
             "model",
@@ -28,9 +29,12 @@ namespace nsfd
                               "that along the axis"
                         : material.kind == MaterialKind::small_strain
                             ? "isotropic bodies alone"
-                            : "linear elastic bodies alone: other laws do not "
-                              "know the strain along the hoops"),
-            "write model = linear elastic");
+                            : "linear elastic bodies alone but in explicit "
+                              "steps: other laws do not know the strain along "
+                              "the hoops"),
+            material.rigid || material.kind == MaterialKind::small_strain
+                ? "write model = linear elastic"
+                : "write scheme = explicit, or model = linear elastic");
       }
     }
 
@@ -84,11 +88,18 @@ namespace nsfd
                            const SceneInput &scene)
   {
     SectionReader top(file.top(), errors);
-    if (scene.large_motion)
+    if (scene.large_motion && !scene.time.scheme.at_nodes)
       top.error("motion",
-                "motion = large is not available for plane = axisymmetric: the "
-                "bodies of large motions have no strain along the hoops",
-                "write motion = small");
+                "motion = large has explicit steps alone for plane = "
+                "axisymmetric: the bodies of implicit ones have no strain "
+                "along the hoops",
+                "write scheme = explicit, or motion = small");
+    for (const ParameterSection *contact : file.open_blocks("Contact"))
+      errors.error(contact->location(),
+                   "surfaces of bodies do not meet each other with plane = "
+                   "axisymmetric: they touch obstacles, and faces of the mesh "
+                   "that have parted touch where they are",
+                   "leave the block out, or write an Obstacle");
     if (scene.adaptivity)
       errors.error(file.open("Adaptivity").location(),
                    "section `Adaptivity` is not available for plane = "

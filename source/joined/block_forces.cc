@@ -160,7 +160,11 @@ namespace nsfd
   {
     const SceneInput &input = discretization.input();
     std::unique_ptr<CellForces<dim>> forces;
-    if (input.iterates())
+    constexpr int of_rings = dim == 2 ? 3 : dim;
+    if (input.iterates() && input.axisymmetric)
+      forces = std::make_unique<FiniteForces<dim, of_rings>>(
+          discretization, mesh, std::move(front), ghosts, divided);
+    else if (input.iterates())
       forces = std::make_unique<FiniteForces<dim>>(
           discretization, mesh, std::move(front), ghosts, divided);
     else

@@ -10,14 +10,15 @@
 
 namespace nsfd
 {
-  template <int dim>
-  CellHistories<dim>::CellHistories(const Discretization<dim> &discretization)
+  template <int dim, int sdim>
+  CellHistories<dim, sdim>::CellHistories(
+      const Discretization<dim> &discretization)
       : discretization_(discretization), first_(first_histories(discretization))
   {
     const SceneInput &input = discretization.input();
     for (const MaterialInput &m : input.materials)
       materials_.push_back(m.kind == MaterialKind::history_dependent
-                               ? m.model->template history_dependent<dim>(
+                               ? m.model->template history_dependent<sdim>(
                                      m, input.large_motion, input.plane_stress)
                                : nullptr);
     std::size_t n = 0;
@@ -30,25 +31,25 @@ namespace nsfd
     now_ = at_rest();
   }
 
-  template <int dim>
-  CellHistories<dim>::~CellHistories() = default;
+  template <int dim, int sdim>
+  CellHistories<dim, sdim>::~CellHistories() = default;
 
-  template <int dim>
-  const HistoryMaterial<dim> *
-  CellHistories<dim>::of(const std::size_t cell) const
+  template <int dim, int sdim>
+  const HistoryMaterial<sdim> *
+  CellHistories<dim, sdim>::of(const std::size_t cell) const
   {
     return materials_[discretization_.cells().body_class(cell).material].get();
   }
 
-  template <int dim>
-  std::size_t CellHistories<dim>::place(const std::size_t cell,
-                                        const unsigned int q) const
+  template <int dim, int sdim>
+  std::size_t CellHistories<dim, sdim>::place(const std::size_t cell,
+                                              const unsigned int q) const
   {
     return first_[cell] + q * of(cell)->n_history();
   }
 
-  template <int dim>
-  std::vector<double> CellHistories<dim>::at_rest() const
+  template <int dim, int sdim>
+  std::vector<double> CellHistories<dim, sdim>::at_rest() const
   {
     std::vector<double> values(first_.back());
     for (std::size_t cell = 0; cell + 1 < first_.size(); ++cell)
@@ -58,8 +59,7 @@ namespace nsfd
     return values;
   }
 
-  template <int dim>
-  void CellHistories<dim>::begin_step(const double time_step)
+  void KeptHistories::begin_step(const double time_step)
   {
     time_step_before_ = time_step_;
     time_step_ = time_step;
@@ -67,32 +67,31 @@ namespace nsfd
     moves_ = true;
   }
 
-  template <int dim>
-  void CellHistories<dim>::go_back()
+  void KeptHistories::go_back()
   {
     now_ = before_;
     time_step_ = time_step_before_;
     moves_ = false;
   }
 
-  template <int dim>
-  bool CellHistories<dim>::set_point(const std::size_t cell,
-                                     const unsigned int q,
-                                     const unsigned int n_same,
-                                     const Voigt<dim> &C, Stress &result)
+  template <int dim, int sdim>
+  bool CellHistories<dim, sdim>::set_point(const std::size_t cell,
+                                           const unsigned int q,
+                                           const unsigned int n_same,
+                                           const Voigt<sdim> &C, Stress &result)
   {
-    const HistoryMaterial<dim> &material = *of(cell);
+    const HistoryMaterial<sdim> &material = *of(cell);
     const unsigned int n = material.n_history();
     const std::size_t at = place(cell, q);
-    Voigt<dim> &strain = strains_[first_point_[cell] + q];
+    Voigt<sdim> &strain = strains_[first_point_[cell] + q];
     result.plastic = result.viscous = 0.;
     if (moves_) {
-      typename HistoryMaterial<dim>::Way way;
+      typename HistoryMaterial<sdim>::Way way;
       way.C0 = strain;
       way.C1 = C;
       way.history = &before_[at];
       way.time_step = time_step_;
-      typename HistoryMaterial<dim>::Step step;
+      typename HistoryMaterial<sdim>::Step step;
       if (!material.step(way, false, step, &now_[at]))
         return false;
       // forces of both ends act along the way, and nothing beside them
@@ -105,18 +104,19 @@ namespace nsfd
     return material.state(C, &now_[at], result.S, result.energy);
   }
 
-  template <int dim>
-  bool CellHistories<dim>::beside(const std::size_t cell, const unsigned int q,
-                                  const Voigt<dim> &C, Voigt<dim> &S) const
+  template <int dim, int sdim>
+  bool
+  CellHistories<dim, sdim>::beside(const std::size_t cell, const unsigned int q,
+                                   const Voigt<sdim> &C, Voigt<sdim> &S) const
   {
-    const HistoryMaterial<dim> &material = *of(cell);
+    const HistoryMaterial<sdim> &material = *of(cell);
     const std::size_t at = place(cell, q);
-    typename HistoryMaterial<dim>::Way way;
+    typename HistoryMaterial<sdim>::Way way;
     way.C0 = strains_[first_point_[cell] + q];
     way.C1 = C;
     way.history = &now_[at];
     way.time_step = time_step_;
-    typename HistoryMaterial<dim>::Step step;
+    typename HistoryMaterial<sdim>::Step step;
     std::vector<double> history(material.n_history());
     double energy = 0.;
     // at the point itself nothing flows: a step of no way is round-off alone
@@ -126,21 +126,23 @@ namespace nsfd
            material.state(C, history.data(), S, energy);
   }
 
-  template <int dim>
-  void CellHistories<dim>::pack(const std::size_t cell, double *values) const
+  template <int dim, int sdim>
+  void CellHistories<dim, sdim>::pack(const std::size_t cell,
+                                      double *values) const
   {
     if (!of(cell))
       return;
     values = std::copy(now_.begin() + long(first_[cell]),
                        now_.begin() + long(first_[cell + 1]), values);
     for (std::size_t q = 0; q < n_points(cell); ++q) {
-      const Voigt<dim> &strain = strains_[first_point_[cell] + q];
+      const Voigt<sdim> &strain = strains_[first_point_[cell] + q];
       values = std::copy(strain.begin(), strain.end(), values);
     }
   }
 
-  template <int dim>
-  void CellHistories<dim>::unpack(const std::size_t cell, const double *values)
+  template <int dim, int sdim>
+  void CellHistories<dim, sdim>::unpack(const std::size_t cell,
+                                        const double *values)
   {
     if (!of(cell))
       return;
@@ -148,12 +150,13 @@ namespace nsfd
     std::copy_n(values, n, now_.begin() + long(first_[cell]));
     values += n;
     for (std::size_t q = 0; q < n_points(cell); ++q) {
-      Voigt<dim> &strain = strains_[first_point_[cell] + q];
+      Voigt<sdim> &strain = strains_[first_point_[cell] + q];
       std::copy_n(values, strain.size(), strain.begin());
       values += strain.size();
     }
   }
 
   template class CellHistories<2>;
+  template class CellHistories<2, 3>;
   template class CellHistories<3>;
 } // namespace nsfd

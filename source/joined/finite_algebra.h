@@ -86,16 +86,33 @@ namespace nsfd::finite
     return result;
   }
 
-  /** f_i -= weight P g_i: what the stress @p P gives to @p n nodes, with the
-      gradients @p g of their shape functions. */
-  template <int dim>
-  void subtract_forces(const Matrix<dim> &P, const double weight,
+  /**
+   * f_i -= weight P g_i: what the stress @p P gives to @p n nodes, with the
+   * gradients @p g of their shape functions, sdim numbers each. Rings are
+   * strained in space, sdim = 3, by motions in the plane: the third number is
+   * N_i/r, along which the radial motion strains them.
+   */
+  template <int dim, int sdim = dim>
+  void subtract_forces(const Matrix<sdim> &P, const double weight,
                        const double *g, const unsigned int n, double *f)
   {
     for (unsigned int i = 0; i < n; ++i) {
-      const auto of_node = multiply<dim>(P, g + i * dim);
+      const auto of_node = multiply<sdim>(P, g + i * sdim);
       for (unsigned int c = 0; c < dim; ++c)
         f[i * dim + c] -= weight * of_node[c];
+      if constexpr (sdim > dim)
+        f[i * dim] -= weight * of_node[dim];
     }
+  }
+
+  /** The part of motions in the plane. */
+  template <int dim, int sdim>
+  Matrix<dim> in_plane(const Matrix<sdim> &A)
+  {
+    Matrix<dim> result;
+    for (unsigned int c = 0; c < dim; ++c)
+      for (unsigned int d = 0; d < dim; ++d)
+        result[c * dim + d] = A[c * sdim + d];
+    return result;
   }
 } // namespace nsfd::finite

@@ -2,6 +2,7 @@
 #include "finite_algebra.h"
 #include "small_strain.h"
 
+#include "discretization/axis.h"
 #include "discretization/cells.h"
 #include "discretization/point_places.h"
 #include "discretization/slot_gradients.h"
@@ -26,15 +27,71 @@ namespace nsfd
     {
       return discretization.cells().body_class(cell).undeformed;
     }
+
+    template <int dim, int sdim>
+    FiniteTables make_tables(const BodyShape<dim> &shape,
+                             const dealii::FiniteElement<dim> &element,
+                             const bool any_histories)
+    {
+      FiniteTables here;
+      const unsigned int n = here.n_nodes = shape.n_nodes;
+      here.on_axis = shape.on_axis;
+      const bool constant = shape.reference.is_simplex() && n == dim + 1 &&
+                            shape.elasticity.size() <= 1;
+      const auto put = [&](const dealii::Tensor<1, dim> &g,
+                           const unsigned int i,
+                           const dealii::Point<dim> &place, const double value,
+                           std::vector<double> &gradients) {
+        for (unsigned int d = 0; d < dim; ++d)
+          gradients.push_back(g[d]);
+        if constexpr (sdim > dim)
+          gradients.push_back(
+              shape.on_axis[i] ? 0. : hoop_of_node(shape, place, value, g));
+      };
+      for (unsigned int q = 0; q < (constant ? 1 : shape.JxW.size()); ++q) {
+        here.JxW.push_back(constant ? shape.volume : shape.JxW[q]);
+        for (unsigned int i = 0; i < n; ++i)
+          put(shape.gradients[q * n + i], i,
+              constant ? shape.centre : shape.positions[q],
+              constant ? 1. / (dim + 1) : shape.values[q * n + i],
+              here.gradients);
+      }
+      if (any_histories)
+        for (const auto &place : shape.slot_positions) {
+          unsigned int nearest = 0;
+          for (unsigned int q = 1; !constant && q < shape.JxW.size(); ++q)
+            if (place.distance_square(shape.positions[q]) <
+                place.distance_square(shape.positions[nearest]))
+              nearest = q;
+          here.slot_points.push_back(nearest);
+        }
+      here.n_same = constant ? unsigned(shape.JxW.size()) - 1 : 0;
+      if (constant)
+        return here;
+      const auto of_slots = slot_gradients(shape, element);
+      for (std::size_t k = 0; k < of_slots.size(); ++k) {
+        const auto s = unsigned(k / n), i = unsigned(k % n);
+        put(of_slots[k], i, shape.slot_positions[s],
+            element.shape_value(i, shape.slot_places[s]), here.slot_gradients);
+      }
+      return here;
+    }
+
+    /** Radial forces on the axis move nothing. */
+    template <int dim>
+    void hold(const std::vector<char> &on_axis, double *forces)
+    {
+      for (std::size_t i = 0; i < on_axis.size(); ++i)
+        if (on_axis[i])
+          forces[i * dim] = 0.;
+    }
   } // namespace
 
-  template <int dim>
-  FiniteForces<dim>::FiniteForces(const Discretization<dim> &discretization,
-                                  const JoinedMesh<dim> &mesh,
-                                  FrontViscosity front,
-                                  const GhostCells *ghosts,
-                                  const GhostCells *divided)
-      : CellForces<dim>(std::move(front)), discretization_(discretization),
+  template <int dim, int sdim>
+  FiniteForces<dim, sdim>::FiniteForces(
+      const Discretization<dim> &discretization, const JoinedMesh<dim> &mesh,
+      FrontViscosity front, const GhostCells *ghosts, const GhostCells *divided)
+      : NonlinearForces<dim>(std::move(front)), discretization_(discretization),
         mesh_(mesh), ghosts_(ghosts), divided_(divided),
         differ_(discretization.cells().differ()),
         small_(!discretization.input().large_motion),
@@ -48,44 +105,20 @@ namespace nsfd
     for (const MaterialInput &m : input.materials)
       materials_.push_back(
           m.kind == MaterialKind::finite_strain
-              ? m.model->template hyperelastic<dim>(m, input.plane_stress)
+              ? m.model->template hyperelastic<sdim>(m, input.plane_stress)
               : nullptr);
     const std::size_t n =
         differ_ ? cells.bodies.size() : cells.bodies.classes.size();
     for (std::size_t k = 0; k < n; ++k) {
-      Tables &here = tables_.emplace_back();
-      if (!differ_ && cells.bodies.classes[k].bodies.empty())
+      if (!differ_ && cells.bodies.classes[k].bodies.empty()) {
+        tables_.emplace_back();
         continue;
+      }
       const std::size_t one = differ_ ? k : cells.bodies.classes[k].bodies[0];
-      const auto of_body = cells.shape(one);
-      const BodyShape<dim> &shape = *of_body;
-      here.n_nodes = shape.n_nodes;
+      FiniteTables &here = tables_.emplace_back(make_tables<dim, sdim>(
+          *cells.shape(one), *cells.element, histories_.any()));
       here.one_dilatation = here.n_nodes == 1u << dim && histories_.of(one) &&
                             !input.plane_stress;
-      const bool constant = shape.reference.is_simplex() &&
-                            shape.n_nodes == dim + 1 &&
-                            shape.elasticity.size() <= 1;
-      for (unsigned int q = 0; q < (constant ? 1 : shape.JxW.size()); ++q) {
-        here.JxW.push_back(constant ? shape.volume : shape.JxW[q]);
-        for (unsigned int i = 0; i < shape.n_nodes; ++i)
-          for (unsigned int d = 0; d < dim; ++d)
-            here.gradients.push_back(shape.gradients[q * shape.n_nodes + i][d]);
-      }
-      if (histories_.any())
-        for (const auto &place : shape.slot_positions) {
-          unsigned int nearest = 0;
-          for (unsigned int q = 1; !constant && q < shape.JxW.size(); ++q)
-            if (place.distance_square(shape.positions[q]) <
-                place.distance_square(shape.positions[nearest]))
-              nearest = q;
-          here.slot_points.push_back(nearest);
-        }
-      here.n_same = constant ? unsigned(shape.JxW.size()) - 1 : 0;
-      if (constant)
-        continue;
-      for (const auto &g : slot_gradients(shape, *cells.element))
-        for (unsigned int d = 0; d < dim; ++d)
-          here.slot_gradients.push_back(g[d]);
     }
     for_all_places(cells.bodies, sides_.size(),
                    [&](const std::size_t body, const unsigned int slot,
@@ -105,46 +138,48 @@ namespace nsfd
     }
   }
 
-  template <int dim>
-  FiniteForces<dim>::~FiniteForces() = default;
+  template <int dim, int sdim>
+  FiniteForces<dim, sdim>::~FiniteForces() = default;
 
-  template <int dim>
-  const Hyperelastic<dim> &
-  FiniteForces<dim>::material(const std::size_t cell) const
+  template <int dim, int sdim>
+  const Hyperelastic<sdim> &
+  FiniteForces<dim, sdim>::material(const std::size_t cell) const
   {
     return *materials_[discretization_.cells().body_class(cell).material];
   }
 
-  template <int dim>
-  auto FiniteForces<dim>::deformation(const std::size_t cell,
-                                      const double *gradients) const -> Matrix
+  template <int dim, int sdim>
+  auto FiniteForces<dim, sdim>::deformation(const std::size_t cell,
+                                            const double *gradients) const
+      -> Matrix
   {
-    Matrix F{};
-    for (unsigned int c = 0; c < dim; ++c)
-      F[c * dim + c] = 1.;
+    Matrix F = finite::unit<sdim>();
     const unsigned int n = tables(cell).n_nodes;
     const double *u = &displacement_[discretization_.bodies().first_dof[cell]];
-    for (unsigned int i = 0; i < n; ++i)
+    for (unsigned int i = 0; i < n; ++i) {
       for (unsigned int c = 0; c < dim; ++c)
         for (unsigned int d = 0; d < dim; ++d)
-          F[c * dim + d] += u[i * dim + c] * gradients[i * dim + d];
+          F[c * sdim + d] += u[i * dim + c] * gradients[i * sdim + d];
+      if constexpr (sdim > dim) // along the hoops
+        F.back() += u[i * dim] * gradients[i * sdim + dim];
+    }
     return F;
   }
 
-  template <int dim>
+  template <int dim, int sdim>
   std::array<double, 2>
-  FiniteForces<dim>::set_elastic_cell(const std::size_t cell, double *f)
+  FiniteForces<dim, sdim>::set_elastic_cell(const std::size_t cell, double *f)
   {
-    const Tables &here = tables(cell);
+    const FiniteTables &here = tables(cell);
     const unsigned int n = here.n_nodes, n_q = unsigned(here.JxW.size());
     double volume = 0., now = 0.;
     for (unsigned int q = 0; q < n_q; ++q) {
-      const double *g = &here.gradients[std::size_t(q) * n * dim],
+      const double *g = &here.gradients[std::size_t(q) * n * sdim],
                    JxW = here.JxW[q];
       const Matrix F = deformation(cell, g);
-      const double J = jacobian<dim>(F.data());
-      const auto C = symmetric_product<dim>(F.data(), F.data());
-      Voigt<dim> S;
+      const double J = jacobian<sdim>(F.data());
+      const auto C = symmetric_product<sdim>(F.data(), F.data());
+      Voigt<sdim> S;
       if (!(J > 0.) || !material(cell).stress(C, S)) {
         inverted_ = int(cell);
         break;
@@ -152,17 +187,17 @@ namespace nsfd
       volume += JxW;
       now += JxW * J;
       stored_[cell] += JxW * material(cell).energy(C);
-      const Matrix P = finite::first_piola<dim>(F, S);
-      peaks_[cell] = std::max(peaks_[cell], finite::square<dim>(P));
-      finite::subtract_forces<dim>(P, JxW, g, n, f);
+      const Matrix P = finite::first_piola<sdim>(F, S);
+      peaks_[cell] = std::max(peaks_[cell], finite::square<sdim>(P));
+      finite::subtract_forces<dim, sdim>(P, JxW, g, n, f);
     }
     return {volume, now};
   }
 
-  template <int dim>
-  void FiniteForces<dim>::set_cell(const std::size_t cell)
+  template <int dim, int sdim>
+  void FiniteForces<dim, sdim>::set_cell(const std::size_t cell)
   {
-    const Tables &here = tables(cell);
+    const FiniteTables &here = tables(cell);
     const std::size_t first = discretization_.bodies().first_dof[cell];
     const unsigned int n = here.n_nodes, n_q = unsigned(here.JxW.size());
     double *f = &forces_[first];
@@ -183,23 +218,28 @@ namespace nsfd
     double *more = &front_forces_[first];
     std::fill_n(more, n * dim, 0.);
     for (unsigned int q = 0; q < n_q && tension != 0.; ++q) {
-      const double *g = &here.gradients[std::size_t(q) * n * dim];
-      const Matrix C = finite::cofactors<dim>(small_ ? finite::unit<dim>()
-                                                     : deformation(cell, g));
-      finite::subtract_forces<dim>(C, here.JxW[q] * tension, g, n, more);
+      const double *g = &here.gradients[std::size_t(q) * n * sdim];
+      const Matrix C = finite::cofactors<sdim>(small_ ? finite::unit<sdim>()
+                                                      : deformation(cell, g));
+      finite::subtract_forces<dim, sdim>(C, here.JxW[q] * tension, g, n, more);
     }
     for (unsigned int k = 0; k < n * dim; ++k)
       f[k] += more[k];
   }
 
-  template <int dim>
-  void FiniteForces<dim>::set_forces(CornerGroups<dim> &groups)
+  template <int dim, int sdim>
+  void FiniteForces<dim, sdim>::set_forces(CornerGroups<dim> &groups)
   {
     inverted_ = -1;
     groups.scatter(groups.displacement, displacement_);
     for (std::size_t cell = 0; cell < stored_.size(); ++cell)
-      if (!divided_ || !divided_->is_ghost(cell))
+      if (!divided_ || !divided_->is_ghost(cell)) {
         set_cell(cell);
+        const std::size_t first = discretization_.bodies().first_dof[cell];
+        hold<dim>(tables(cell).on_axis, &forces_[first]);
+        if (!front_forces_.empty())
+          hold<dim>(tables(cell).on_axis, &front_forces_[first]);
+      }
     if (divided_)
       share_cells();
     histories_.end_step();
@@ -216,18 +256,18 @@ namespace nsfd
         groups.force[groups.of(i) * dim + c] += forces_[i * dim + c];
   }
 
-  template <int dim>
+  template <int dim, int sdim>
   std::array<double, dim>
-  FiniteForces<dim>::corner_force(const std::size_t corner,
-                                  const CornerGroups<dim> &) const
+  FiniteForces<dim, sdim>::corner_force(const std::size_t corner,
+                                        const CornerGroups<dim> &) const
   {
     std::array<double, dim> force;
     std::copy_n(&forces_[corner * dim], dim, force.begin());
     return force;
   }
 
-  template <int dim>
-  std::vector<double> FiniteForces<dim>::front_powers(
+  template <int dim, int sdim>
+  std::vector<double> FiniteForces<dim, sdim>::front_powers(
       const CornerGroups<dim> &groups,
       const std::vector<const std::vector<double> *> &velocities) const
   {
@@ -247,19 +287,20 @@ namespace nsfd
     return terms;
   }
 
-  template <int dim>
-  const double *FiniteForces<dim>::at_slot(const std::size_t cell,
-                                           const unsigned int slot) const
+  template <int dim, int sdim>
+  const double *FiniteForces<dim, sdim>::at_slot(const std::size_t cell,
+                                                 const unsigned int slot) const
   {
-    const Tables &here = tables(cell);
+    const FiniteTables &here = tables(cell);
     return here.slot_gradients.empty()
                ? here.gradients.data()
-               : &here.slot_gradients[std::size_t(slot) * here.n_nodes * dim];
+               : &here.slot_gradients[std::size_t(slot) * here.n_nodes * sdim];
   }
 
-  template <int dim>
-  auto FiniteForces<dim>::stress_at(const std::size_t cell,
-                                    const unsigned int slot) const -> Matrix
+  template <int dim, int sdim>
+  auto FiniteForces<dim, sdim>::stress_at(const std::size_t cell,
+                                          const unsigned int slot) const
+      -> Matrix
   {
     if (is_rigid(discretization_, cell))
       return {};
@@ -267,32 +308,33 @@ namespace nsfd
       return small_stress_beside(
           discretization_, histories_, cell, tables(cell).slot_points[slot],
           slot,
-          small_gradient<dim>(deformation(cell, at_slot(cell, slot)),
-                              tables(cell).one_dilatation ? &dilatations_[cell]
-                                                          : nullptr));
+          small_gradient<sdim>(deformation(cell, at_slot(cell, slot)),
+                               tables(cell).one_dilatation ? &dilatations_[cell]
+                                                           : nullptr));
     const Matrix F = deformation(cell, at_slot(cell, slot));
     if (histories_.any() && histories_.of(cell))
       return flowing_stress(cell, tables(cell).slot_points[slot], F);
-    Voigt<dim> S;
-    if (!(jacobian<dim>(F.data()) > 0.) ||
-        !material(cell).stress(symmetric_product<dim>(F.data(), F.data()), S))
+    Voigt<sdim> S;
+    if (!(jacobian<sdim>(F.data()) > 0.) ||
+        !material(cell).stress(symmetric_product<sdim>(F.data(), F.data()), S))
       return {};
-    return finite::first_piola<dim>(F, S);
+    return finite::first_piola<sdim>(F, S);
   }
 
-  template <int dim>
-  auto FiniteForces<dim>::frame(const std::size_t point) const -> Matrix
+  template <int dim, int sdim>
+  std::array<double, dim * dim>
+  FiniteForces<dim, sdim>::frame(const std::size_t point) const
   {
     const double *rest = discretization_.points().axes(point);
-    Matrix axes;
+    finite::Matrix<dim> axes;
     std::copy_n(rest, dim * dim, axes.begin());
     if (small_)
       return axes;
-    Matrix F{};
+    finite::Matrix<dim> F{};
     for (const auto &[cell, slot] : sides_[point])
       if (cell >= 0) {
-        const Matrix of_side =
-            deformation(std::size_t(cell), at_slot(std::size_t(cell), slot));
+        const auto of_side = finite::in_plane<dim, sdim>(
+            deformation(std::size_t(cell), at_slot(std::size_t(cell), slot)));
         for (unsigned int k = 0; k < dim * dim; ++k)
           F[k] += of_side[k] / 2.;
       }
@@ -319,10 +361,10 @@ namespace nsfd
     return axes;
   }
 
-  template <int dim>
+  template <int dim, int sdim>
   std::array<double, dim>
-  FiniteForces<dim>::traction(const StrengthSites<dim> &sites,
-                              const std::size_t site) const
+  FiniteForces<dim, sdim>::traction(const StrengthSites<dim> &sites,
+                                    const std::size_t site) const
   {
     const auto &points = discretization_.points();
     const unsigned int first = sites[site].first_point,
@@ -335,7 +377,8 @@ namespace nsfd
       const double *rest = points.axes(i);
       std::array<double, dim> t{};
       for (const auto &[cell, slot] : sides_[i]) {
-        const Matrix P = stress_at(std::size_t(cell), slot);
+        const auto P =
+            finite::in_plane<dim, sdim>(stress_at(std::size_t(cell), slot));
         const auto of_side = finite::multiply<dim>(P, rest);
         for (unsigned int c = 0; c < dim; ++c)
           t[c] += of_side[c] / 2.;
@@ -354,8 +397,8 @@ namespace nsfd
     return result;
   }
 
-  template <int dim>
-  void FiniteForces<dim>::squared_tractions(
+  template <int dim, int sdim>
+  void FiniteForces<dim, sdim>::squared_tractions(
       const StrengthSites<dim> &sites,
       typename StrengthSites<dim>::Near &near) const
   {
@@ -375,8 +418,8 @@ namespace nsfd
     }
   }
 
-  template <int dim>
-  double FiniteForces<dim>::stiffening() const
+  template <int dim, int sdim>
+  double FiniteForces<dim, sdim>::stiffening() const
   {
     const auto norm = [](const auto &values) {
       double sum = 0.;
@@ -385,10 +428,10 @@ namespace nsfd
       return std::sqrt(sum);
     };
     std::vector<double> at_rest;
-    Voigt<dim> unit{}, S;
-    for (unsigned int c = 0; c < dim; ++c)
+    Voigt<sdim> unit{}, S;
+    for (unsigned int c = 0; c < sdim; ++c)
       unit[c] = 1.;
-    VoigtBlock<dim> tangent;
+    VoigtBlock<sdim> tangent;
     for (const auto &material : materials_) {
       at_rest.push_back(1.);
       if (material && material->stress(unit, S, &tangent))
@@ -396,7 +439,7 @@ namespace nsfd
     }
     double most = 1.;
     for (std::size_t cell = 0; !small_ && cell < stored_.size(); ++cell) {
-      const Tables &here = tables(cell);
+      const FiniteTables &here = tables(cell);
       if (is_rigid(discretization_, cell) ||
           (divided_ && divided_->is_ghost(cell)))
         continue;
@@ -408,18 +451,19 @@ namespace nsfd
           at_rest[discretization_.cells().body_class(cell).material];
       for (std::size_t q = 0; q < here.JxW.size(); ++q) {
         const Matrix F =
-            deformation(cell, &here.gradients[q * here.n_nodes * dim]);
-        if (!material(cell).stress(symmetric_product<dim>(F.data(), F.data()),
+            deformation(cell, &here.gradients[q * here.n_nodes * sdim]);
+        if (!material(cell).stress(symmetric_product<sdim>(F.data(), F.data()),
                                    S, &tangent))
           continue;
-        most =
-            std::max(most, norm(tangent) / rest * finite::square<dim>(F) / dim +
-                               norm(S) / material(cell).modulus());
+        most = std::max(most,
+                        norm(tangent) / rest * finite::square<sdim>(F) / sdim +
+                            norm(S) / material(cell).modulus());
       }
     }
     return divided_ ? divided_->largest(most) : most;
   }
 
   template class FiniteForces<2>;
+  template class FiniteForces<2, 3>;
   template class FiniteForces<3>;
 } // namespace nsfd

@@ -7,8 +7,8 @@
 namespace nsfd
 {
   /** What set_cell() leaves of each cell, from its rank. Collective. */
-  template <int dim>
-  void FiniteForces<dim>::share_cells()
+  template <int dim, int sdim>
+  void FiniteForces<dim, sdim>::share_cells()
   {
     const std::size_t n_cells = stored_.size();
     const auto &first = discretization_.bodies().first_dof;
@@ -62,5 +62,6 @@ namespace nsfd
   }
 
   template void FiniteForces<2>::share_cells();
+  template void FiniteForces<2, 3>::share_cells();
   template void FiniteForces<3>::share_cells();
 } // namespace nsfd

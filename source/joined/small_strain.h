@@ -6,9 +6,9 @@
 namespace nsfd
 {
   /** What small strain does at a point of the quadrature of a cell. */
-  template <int dim>
+  template <int sdim>
   struct SmallStrain {
-    finite::Matrix<dim> sigma{};       ///< Pa
+    finite::Matrix<sdim> sigma{};      ///< Pa
     double energy = 0.;                ///< J per volume
     double plastic = 0., viscous = 0.; ///< of the step, J per volume
   };
@@ -30,21 +30,23 @@ namespace nsfd
 
   /**
    * Of point @p q at the gradient @p H of the displacement, [component]
-   * [direction]: by what the point keeps, which moves on, or by Hooke's law.
+   * [direction], of a ring with its strain along the hoops: by what the point
+   * keeps, which moves on, or by Hooke's law.
    * @p n_same points behind it keep the same. False where numbers are not
    * finite.
    */
-  template <int dim>
+  template <int dim, int sdim>
   bool set_small_strain(const Discretization<dim> &discretization,
-                        CellHistories<dim> &histories, std::size_t cell,
+                        CellHistories<dim, sdim> &histories, std::size_t cell,
                         unsigned int q, unsigned int n_same,
-                        const finite::Matrix<dim> &H, SmallStrain<dim> &result);
+                        const finite::Matrix<sdim> &H,
+                        SmallStrain<sdim> &result);
 
   /** The stress at slot @p slot of the cell, next to point @p q. */
-  template <int dim>
-  finite::Matrix<dim>
+  template <int dim, int sdim>
+  finite::Matrix<sdim>
   small_stress_beside(const Discretization<dim> &discretization,
-                      const CellHistories<dim> &histories, std::size_t cell,
-                      unsigned int q, unsigned int slot,
-                      const finite::Matrix<dim> &H);
+                      const CellHistories<dim, sdim> &histories,
+                      std::size_t cell, unsigned int q, unsigned int slot,
+                      const finite::Matrix<sdim> &H);
 } // namespace nsfd

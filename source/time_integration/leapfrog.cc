@@ -49,7 +49,7 @@ namespace nsfd
     ghosts_.set_mesh(mesh_, hanging_);
     if (const auto *absorbing = loads_.absorbing())
       absorbing->check(communicator_);
-    if (auto *finite = dynamic_cast<FiniteForces<dim> *>(forces_.get()))
+    if (auto *finite = dynamic_cast<NonlinearForces<dim> *>(forces_.get()))
       large_ = std::make_unique<LeapfrogLarge<dim>>(
           input, discretization_, mesh_, all_, communicator_, *finite);
     if (!hanging_.any() && !input.has_rigid_bodies())

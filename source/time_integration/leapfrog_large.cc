@@ -30,7 +30,7 @@ namespace nsfd
                                     const JoinedMesh<dim> &mesh,
                                     const OneStepProblem<dim> &all,
                                     const Communicator &communicator,
-                                    FiniteForces<dim> &forces)
+                                    NonlinearForces<dim> &forces)
       : input_(input), discretization_(discretization), mesh_(mesh),
         communicator_(communicator), forces_(forces)
   {

@@ -33,7 +33,8 @@ namespace nsfd
     LeapfrogLarge(const SceneInput &input,
                   const Discretization<dim> &discretization,
                   const JoinedMesh<dim> &mesh, const OneStepProblem<dim> &all,
-                  const Communicator &communicator, FiniteForces<dim> &forces);
+                  const Communicator &communicator,
+                  NonlinearForces<dim> &forces);
 
     void set_initial(State &state) const;
     /** What materials keep in @p state, before its forces. */
@@ -133,7 +134,7 @@ namespace nsfd
     const Discretization<dim> &discretization_;
     const JoinedMesh<dim> &mesh_;
     const Communicator &communicator_;
-    FiniteForces<dim> &forces_;
+    NonlinearForces<dim> &forces_;
     std::unique_ptr<LeapfrogContacts<dim>> contacts_; ///< null: none
     FrontViscosity front_; ///< of the forces that act in the step
     double turned_ = 0.;   ///< see LeapfrogEnergies, until a step is taken, J

@@ -48,7 +48,7 @@ namespace nsfd
         if (at != unsigned(-1))
           heat.of_points[at] += energy;
       }
-      const auto *flowing = dynamic_cast<const FiniteForces<dim> *>(&forces);
+      const auto *flowing = dynamic_cast<const NonlinearForces<dim> *>(&forces);
       heat.of_cells.clear();
       if (!flowing || flowing->taken().empty())
         return;

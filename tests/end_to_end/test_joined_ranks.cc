@@ -202,6 +202,7 @@ end
         {"taylor_bar",
          {with_mesh("taylor_bar_coarse.geo"), "Time/end=1 us"},
          true},
+        {"taylor_axisymmetric", {"Time/end=2 us"}, true},
         {"spall_square", {"Mesh/cells=60, 1"}, true},
         {"plate_impact", {"Mesh/cells=80, 1"}, true},
         {"bar_wall", {"Mesh/cells=40, 1"}, true},

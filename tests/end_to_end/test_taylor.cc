@@ -33,4 +33,28 @@ namespace end_to_end
                  std::abs(3.2 + 1e3 * last("foot", "displacement_x") - 7.1),
                  0.1, "spread of the figures");
   }
+
+  /**
+   * The same bar as rings, 4 cells along its radius and 26 along it. With half
+   * as many it becomes shorter by 10.74 mm and 6.84 mm wide, with these by
+   * 10.89 and 7.12: a third of the differences is left.
+   */
+  TEST(Taylor, RingsEndAsLongAndWideAsTheBar)
+  {
+    const Workspace workspace;
+    const Result result =
+        good_run(workspace, "rings", {benchmark("taylor_axisymmetric"), {}});
+    ASSERT_TRUE(result.completed()) << result.description();
+    const auto last = [&](const std::string &name, const std::string &column) {
+      const History history(
+          read_text(result.directory / "observables" / (name + ".csv")));
+      return history[column].back();
+    };
+    expect_below("length from 21.4 mm, mm",
+                 std::abs(32.4 + 1e3 * last("tip", "displacement_y") - 21.4),
+                 0.1 + 0.05, "spread of the figures, error of these cells");
+    expect_below("radius from 7.1 mm, mm",
+                 std::abs(3.2 + 1e3 * last("foot", "displacement_x") - 7.1),
+                 0.1, "spread of the figures");
+  }
 } // namespace end_to_end

@@ -447,7 +447,8 @@ end
                                "  set cells = 2, 2\nend\n",
                         rest = faces("joined") + in_time("0.5 courant", "0.5");
       const std::vector<Refused> cases = {
-          {"set motion = large\n" + material(), "motion = large is not"},
+          {"set motion = large\n" + material(),
+           "motion = large has explicit steps alone"},
           {material() + "subsection Loads\n  set gravity = 9.81, 0\nend\n",
            "has a part across the axis"},
           {"subsection Material: body\n  set model = rigid\n"

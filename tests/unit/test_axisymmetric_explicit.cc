@@ -414,25 +414,16 @@ end
       EXPECT_NEAR(run.momentum()[1], -before, 0.02 * std::abs(before));
     }
 
-    struct Refused {
-      std::vector<std::string> overrides;
-      std::string sentence;
-    };
-
-    TEST(AxisymmetricExplicit, Refusals)
+    TEST(AxisymmetricExplicit, OfDegreeOneAlone)
     {
-      const std::string text = scene({"1, 1", "2, 2"}, "", joined);
-      const std::vector<Refused> cases = {
-          {{"Discretization/degree=2"},
-           "nodes on the axis of plane = axisymmetric would have no lumped"},
-          {{"motion=large"}, "motion = large is not available for plane = "},
-      };
-      for (const Refused &one : cases) {
-        InputErrors errors;
-        EXPECT_FALSE(read_scene_text(text, "test.prm", one.overrides, errors));
-        EXPECT_NE(errors.report().find(one.sentence), std::string::npos)
-            << errors.report();
-      }
+      InputErrors errors;
+      EXPECT_FALSE(read_scene_text(scene({"1, 1", "2, 2"}, "", joined),
+                                   "test.prm", {"Discretization/degree=2"},
+                                   errors));
+      EXPECT_NE(errors.report().find("nodes on the axis of plane = "
+                                     "axisymmetric would have no lumped"),
+                std::string::npos)
+          << errors.report();
     }
   } // namespace
 } // namespace nsfd::test_axisymmetric_explicit
