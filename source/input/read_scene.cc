@@ -232,6 +232,14 @@ namespace nsfd
       return choice->longest_steps ? choice : nullptr;
     }
 
+    std::size_t n_errors(const InputErrors &errors)
+    {
+      const auto &all = errors.diagnostics();
+      return std::size_t(
+          std::count_if(all.begin(), all.end(),
+                        [](const Diagnostic &one) { return one.is_error(); }));
+    }
+
     /**
      * A scene with `scheme = auto`, with implicit steps and with explicit ones:
      * which of them is predicted to cost less is known with the mesh.
@@ -251,8 +259,12 @@ namespace nsfd
       std::unique_ptr<SceneInput> longest =
           read({{"scheme", "explicit"}, {"step", "auto"}}, of_explicit);
       const bool only_explicit = !scene && longest;
+      // what is wrong with both; some entries are for explicit steps alone
+      const bool is_explicit =
+          only_explicit ||
+          (!scene && n_errors(of_explicit) < n_errors(of_implicit));
       for (const Diagnostic &one :
-           (only_explicit ? of_explicit : of_implicit).diagnostics())
+           (is_explicit ? of_explicit : of_implicit).diagnostics())
         errors.add(one);
       if (only_explicit) {
         longest->scheme_choice =

@@ -297,6 +297,13 @@ end
         EXPECT_NE(errors.report().find(one.sentence), std::string::npos)
             << errors.report();
       }
+      // where either scheme may be taken, nothing is said of the implicit one
+      InputErrors errors;
+      EXPECT_FALSE(read_scene_text(
+          scene("rectangle", elastic,
+                "subsection Contact: all\n  set friction = 0.1\nend\n"),
+          "test.prm", {"Time/scheme=auto"}, errors));
+      EXPECT_EQ(errors.diagnostics().size(), 1u) << errors.report();
     }
   } // namespace
 } // namespace nsfd::test_axisymmetric_large
