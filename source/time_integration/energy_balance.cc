@@ -144,8 +144,6 @@ namespace nsfd
       reactions_ = communicator.sums(points.reactions.data(), reactions_.size(),
                                      points.n_owned);
 
-    next.heat.of_points = std::move(points.heat);
-
     EnergyLines &energy = next.energy;
     energy = old.energy;
     energy.kinetic = bodies.kinetic;

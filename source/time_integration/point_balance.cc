@@ -57,8 +57,8 @@ namespace nsfd
         problem_(problem), evaluation_(evaluation), origins_(origins),
         work_theta_(work_theta), old_(old), next_(next)
   {
-    if (discretization.input().has_heat())
-      heat.assign(old.kind.size(), 0.);
+    next.heat.of_points.assign(
+        discretization.input().has_heat() ? old.kind.size() : 0, 0.);
     carry_history(old, next);
     next.dilated = old.dilated;
     next.worn = old.worn;

@@ -59,8 +59,6 @@ namespace nsfd
     unsigned int n_rows;
     std::vector<double> terms;     ///< n_rows of n_owned
     std::vector<double> reactions; ///< the same, dim rows per boundary
-    /// of each point, shared ones too, J; empty where a scene has no heat
-    std::vector<double> heat;
     double penetration = 0., excess = 0., drift = 0., viscous_traction = 0.;
     unsigned int active = 0;
     bool beyond_unique = false;
@@ -81,6 +79,7 @@ namespace nsfd
 
     void put(const Row row, const double value)
     {
+      auto &heat = next_.heat.of_points; // of shared points, too
       if (!heat.empty() && (row == damage || row == friction))
         heat[points[place_]] += value;
       if (place_ < n_owned)
