@@ -232,12 +232,18 @@ namespace nsfd
       return choice->longest_steps ? choice : nullptr;
     }
 
-    std::size_t n_errors(const InputErrors &errors)
+    /** All that is wrong in @p some is among what is wrong in @p all. */
+    bool is_part_of(const InputErrors &some, const InputErrors &all)
     {
-      const auto &all = errors.diagnostics();
-      return std::size_t(
-          std::count_if(all.begin(), all.end(),
-                        [](const Diagnostic &one) { return one.is_error(); }));
+      const auto &list = all.diagnostics();
+      return std::all_of(some.diagnostics().begin(), some.diagnostics().end(),
+                         [&](const Diagnostic &one) {
+                           return std::any_of(list.begin(), list.end(),
+                                              [&](const Diagnostic &other) {
+                                                return other.message ==
+                                                       one.message;
+                                              });
+                         });
     }
 
     /**
@@ -259,10 +265,9 @@ namespace nsfd
       std::unique_ptr<SceneInput> longest =
           read({{"scheme", "explicit"}, {"step", "auto"}}, of_explicit);
       const bool only_explicit = !scene && longest;
-      // what is wrong with both; some entries are for explicit steps alone
+      // what is wrong with both: some entries are for explicit steps alone
       const bool is_explicit =
-          only_explicit ||
-          (!scene && n_errors(of_explicit) < n_errors(of_implicit));
+          only_explicit || (!scene && is_part_of(of_explicit, of_implicit));
       for (const Diagnostic &one :
            (is_explicit ? of_explicit : of_implicit).diagnostics())
         errors.add(one);

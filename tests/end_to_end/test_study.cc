@@ -298,6 +298,8 @@ namespace end_to_end::test_study
   TEST(Study, WaitsForWhatWritesToItsFolder)
   {
     const Workspace workspace;
+    const fs::path elsewhere = workspace.path() / "elsewhere"; // it prints here
+    fs::create_directory(elsewhere);
     ASSERT_EQ(study(workspace, {"Mesh/cells=[4, 1],[8, 1]"}).exit_code, 0);
     const fs::path folder = workspace.path() / "s/cells=8-1";
     fs::remove(folder / "case.json");
@@ -305,7 +307,7 @@ namespace end_to_end::test_study
     Process other({NSFD_PROGRAM, scene("mode").string(), "--output",
                    folder.string(), "--force", "--quiet", "--set",
                    "Mesh/cells=2048, 1"},
-                  workspace.path()); // minutes
+                  elsewhere); // minutes
     ASSERT_TRUE(wait_for_rows(folder, 2));
     Process resumed({NSFD_PROGRAM, "study", scene("mode").string(), "--output",
                      "s", "--set", "Time/end=50 us", "--set", "Study/repeats=1",
