@@ -19,26 +19,27 @@ namespace nsfd
       inverse_ = 1. / plastic.hardening_exponent;
   }
 
-  // s - 1 from Newton's steps for the convex s^m - , which fall to
-  // the root from its right. There they start: y = s^m is at most
-  // 1 + x m/(m - 1), because y^(1/m) is at most 1 + (y - 1)/m.
+  // t = s - 1 of s^m = s + x from Newton's steps for m log s = log(s + x), both
+  // sides of which are nearly straight. They begin on the left of the root, at
+  // s^m = 1 + x, and as the difference is concave none of them passes it.
   double IsotropicHardening::excess(const double p) const
   {
-    constexpr unsigned int most_steps = 100;
     constexpr double round_off = std::numeric_limits<double>::epsilon();
     const double m = inverse_, x = p / yield_strain_;
     if (!(x > 0.))
       return 0.;
-    double t = std::expm1(std::log1p(x * m / (m - 1.)) / m);
-    for (unsigned int k = 0; k < most_steps; ++k) {
-      const double power = std::expm1(m * std::log1p(t)); // s^m - 1
-      const double change =
-          (power - t - x) / (m * (1. + power) / (1. + t) - 1.);
-      t -= change;
-      if (!(std::abs(change) > 2. * round_off * t))
-        break;
+    double t = std::expm1(std::log1p(x) / m),
+           last = std::numeric_limits<double>::infinity();
+    for (;;) {
+      const double change = (std::log1p(x + t) - m * std::log1p(t)) /
+                            (m / (1. + t) - 1. / (1. + x + t));
+      t += change;
+      // the last digits come and go
+      if (!(std::abs(change) > 2. * round_off * t) ||
+          !(std::abs(change) < last))
+        return std::max(0., t);
+      last = std::abs(change);
     }
-    return std::max(0., t);
   }
 
   // The mean of t = s - 1 over the flow dp = yield/E (m s^(m - 1) - 1) ds from
@@ -79,9 +80,9 @@ namespace nsfd
   {
     if (inverse_ > 0.) {
       const double t = excess(p);
-      return {yield_ * t,
-              yield_ / yield_strain_ /
-                  (inverse_ * std::exp((inverse_ - 1.) * std::log1p(t)) - 1.)};
+      // s^(m - 1) = (s + x) / s
+      const double power = 1. + p / yield_strain_ / (1. + t);
+      return {yield_ * t, yield_ / yield_strain_ / (inverse_ * power - 1.)};
     }
     return {linear_ * p - saturation_ * std::expm1(-decay_ * p),
             linear_ + saturation_ * decay_ * std::exp(-decay_ * p)};
