@@ -14,6 +14,23 @@ namespace nsfd
 {
   namespace
   {
+    /** Those of the program itself, for who has written none of @p names. */
+    std::string usual_types(const std::vector<std::string> &names,
+                            const unsigned int dimension)
+    {
+      constexpr unsigned int last_place = 9; // generators of deal.II follow
+      std::vector<std::string> own;
+      for (const std::string &name : names) {
+        const auto type = find_mesh_type(name);
+        if (type->place() <= last_place &&
+            (type->dimension() == 0 || type->dimension() == dimension))
+          own.push_back(name);
+      }
+      return fmt::format("write one of {}, or a generator of deal.II: "
+                         "`nsfd --list` prints all names",
+                         fmt::join(own, ", "));
+    }
+
     /** The type, checked; empty if nothing more can be read. */
     std::string read_type(SectionReader &reader, const unsigned int dimension,
                           const bool is_body)
@@ -53,9 +70,9 @@ namespace nsfd
                      "take rectangle, brick, triangles, tetrahedra or a "
                      "generator of deal.II");
       else if (std::find(names.begin(), names.end(), type) == names.end())
-        reader.error(
-            "type", fmt::format("type = {} is not the name of a mesh", type),
-            did_you_mean(type, names, "`nsfd --list` prints all names"));
+        reader.error("type",
+                     fmt::format("type = {} is not the name of a mesh", type),
+                     did_you_mean(type, names, usual_types(names, dimension)));
       else
         return type;
       reader.accept_everything();

@@ -282,6 +282,8 @@ namespace nsfd::changed_scene::test_bad_input
          "set scheme = newmark"},
         {"mesh_type", "set type = rectangle", "set type = rectangel",
          "did you mean `rectangle`?", "set type = rectangel"},
+        {"mesh_unknown", "set type = rectangle", "set type = box",
+         "write one of rectangle, ", "set type = box"},
         {"mesh_voronoi", "set type = rectangle", "set type = voronoi",
          "`grains` is missing in section `Mesh`", "subsection Mesh"},
         {"mesh_file", "set type = rectangle", "set type = file",
