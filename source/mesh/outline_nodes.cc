@@ -74,9 +74,12 @@ namespace nsfd
                          &to = outline_.points[other(b, p)];
         const double dot = (x[0] - from[0]) * (to[0] - x[0]) +
                            (x[1] - from[1]) * (to[1] - x[1]);
+        const double cosine = dot / (distance(from, x) * distance(x, to));
+        if (outline_.keeps_straight_points && cosine > 1. - 1e-12)
+          return true;
         // a circle of eighteen sides or more has no corner
         constexpr double cosine_of_corner = .939;
-        return dot < cosine_of_corner * distance(from, x) * distance(x, to);
+        return cosine < cosine_of_corner;
       }
 
     private:

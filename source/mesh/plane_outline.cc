@@ -238,7 +238,9 @@ namespace nsfd
           problems.push_back(fmt::format("line `{}` has a point outside of the "
                                          "mesh, {}",
                                          path.name, text(p)));
-    return arrangement.outline();
+    PlaneOutline outline = arrangement.outline();
+    outline.keeps_straight_points = true;
+    return outline;
   }
 
   namespace

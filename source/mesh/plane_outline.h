@@ -27,6 +27,9 @@ namespace nsfd
     std::vector<PlanePoint> points;
     std::vector<Line> lines;
     std::vector<Inside> parts; ///< empty: all of it, of set 0
+    /// who drew a point on a straight line wants a node there: where a crack
+    /// ends
+    bool keeps_straight_points = false;
   };
 
   /** Lines that the user draws: a closed one around, and others in it. */
