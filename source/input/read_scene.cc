@@ -232,18 +232,18 @@ namespace nsfd
       return choice->longest_steps ? choice : nullptr;
     }
 
-    /** All that is wrong in @p some is among what is wrong in @p all. */
+    /** What is wrong in @p some is a part of what is wrong in @p all. */
     bool is_part_of(const InputErrors &some, const InputErrors &all)
     {
       const auto &list = all.diagnostics();
-      return std::all_of(some.diagnostics().begin(), some.diagnostics().end(),
-                         [&](const Diagnostic &one) {
-                           return std::any_of(list.begin(), list.end(),
-                                              [&](const Diagnostic &other) {
-                                                return other.message ==
-                                                       one.message;
-                                              });
-                         });
+      const auto is_there = [&](const Diagnostic &one) {
+        return std::any_of(list.begin(), list.end(), [&](const auto &other) {
+          return other.message == one.message;
+        });
+      };
+      return some.n_errors() < all.n_errors() &&
+             std::all_of(some.diagnostics().begin(), some.diagnostics().end(),
+                         is_there);
     }
 
     /**

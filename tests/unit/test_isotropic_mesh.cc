@@ -164,6 +164,21 @@ namespace mesh_checks::test_isotropic_mesh
               6 * mesh.named().cells.size());
   }
 
+  // Where a straight line has a point, as where a crack ends, there is a node.
+  TEST(IsotropicMesh, HasNodesWhereStraightLinesHavePoints)
+  {
+    const test::BuiltMesh<2> mesh(test::mesh_scene(
+        2, "set type = isotropic\nset upper corner = 30, 20\nset size = 1\n"
+           "set split = none\n"
+           "set lines = crack: [0, 10], [12.3456, 10]; rest: [12.3456, 10], "
+           "[30, 10]; seam: [3, 5], [7.654, 5], [20, 5]\n"));
+    EXPECT_NEAR(mesh.inner_area("crack"), 12.3456, 1e-12);
+    double nearest = 1.;
+    for (const auto &x : mesh.triangulation->get_vertices())
+      nearest = std::min(nearest, std::hypot(x[0] - 7.654, x[1] - 5.));
+    EXPECT_LT(nearest, 1e-12);
+  }
+
   TEST(IsotropicMesh, FillsAPolygon)
   {
     // not convex; three quads of each triangle
