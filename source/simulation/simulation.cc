@@ -53,8 +53,9 @@ namespace nsfd
       bool is_over();
       bool advance(State &next, std::string &failure);
       bool change_mesh(State &next);
-      void warm(State &before);
-      void accept(State &next, const StepReport &report, double time_step);
+      bool warm(State &before, std::string &failure);
+      bool accept(State &next, const StepReport &report, double time_step,
+                  std::string &failure);
       int stop(bool between_steps);
       int fail(const std::string &failure);
       void finish(const std::string &failure);
@@ -331,8 +332,7 @@ namespace nsfd
       const double h = model_.control->step();
       if (outcome != Outcome::taken || change_mesh(next))
         return outcome != Outcome::failed;
-      accept(next, report, h);
-      return true;
+      return accept(next, report, h, failure);
     }
 
     /**
@@ -355,29 +355,38 @@ namespace nsfd
       return true;
     }
 
-    /** @p before: the state before the step, which has the temperatures. */
+    /** @p before: the state before the step, which has the temperatures. False
+        with the reason if heat could not be conducted. */
     template <int dim>
-    void Simulation<dim>::warm(State &before)
+    bool Simulation<dim>::warm(State &before, std::string &failure)
     {
       if (!parts_.heat)
-        return;
+        return true;
       const Charge charge(Cost::heat);
       std::swap(state_.heat.of_points, before.heat.of_points);
       std::swap(state_.heat.of_cells, before.heat.of_cells);
       std::swap(state_.heat, before.heat);
-      parts_.heat->accept(state_, [this] { steps_.integrator().show(state_); });
+      try {
+        parts_.heat->accept(state_,
+                            [this] { steps_.integrator().show(state_); });
+      } catch (const std::runtime_error &error) { // on all ranks
+        failure = fmt::format("{} at t = {:.6g} s", error.what(), state_.time);
+        return false;
+      }
+      return true;
     }
 
+    /** False with the reason if the run cannot go on after it. */
     template <int dim>
-    void Simulation<dim>::accept(State &next, const StepReport &report,
-                                 const double h)
+    bool Simulation<dim>::accept(State &next, const StepReport &report,
+                                 const double h, std::string &failure)
     {
       steps_.accept();
       next.time = model_.control->time();
       std::swap(state_, next);
       if (steps_.integrator().keeps_motion())
         swap_motion(state_, next); // there is one of it
-      warm(next);
+      const bool is_good = warm(next, failure);
       const auto news =
           parts_.events.accept(next, steps_.integrator(),
                                *model_.discretization, communicator_, state_);
@@ -398,6 +407,7 @@ namespace nsfd
       const Charge charge(Cost::output);
       if (store_)
         store_->store_if_due();
+      return is_good;
     }
 
     /** The last good state is stored, with a line to paste. */
