@@ -6,6 +6,7 @@
 
 #include <signal.h>
 #include <sys/prctl.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <iostream>
@@ -16,9 +17,13 @@ int main(int argc, char **argv)
   if (const auto code = run_gmsh_if_asked(argc, argv))
     return *code;
   // a case of a study that is killed would go on in a folder which the next
-  // study needs
-  if (std::getenv("NSFD_CASE_OF_A_STUDY") != nullptr)
+  // study needs; killed before this line, it is no parent any more
+  if (const char *const study = std::getenv("NSFD_CASE_OF_A_STUDY")) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
+    const long parent = std::atol(study);
+    if (parent > 0 && parent != long(getppid()))
+      return exit_code::stopped;
+  }
   try {
     CommandLine line;
     if (const auto code =

@@ -92,7 +92,9 @@ namespace nsfd
           all.emplace_back(*entry);
       if (std::getenv("OMP_NUM_THREADS") == nullptr)
         all.emplace_back("OMP_NUM_THREADS=1");
-      all.emplace_back("NSFD_CASE_OF_A_STUDY=1");
+      // the parent of ranks is mpirun
+      all.push_back("NSFD_CASE_OF_A_STUDY=" +
+                    std::to_string(mpi.path().empty() ? getpid() : 0));
       if (mpi.path().empty())
         return all;
       all.push_back(own + mpi.path());
