@@ -87,13 +87,13 @@ namespace nsfd
     return along;
   }
 
-  /** Radial motions of nodes on the axis take part in nothing: of a field with
+  /** Radial motions of nodes @p on_axis take part in nothing: of a field with
       dim values per node. */
   template <int dim>
-  void hold_nodes(const BodyShape<dim> &shape, double *nodal)
+  void hold_nodes(const std::vector<char> &on_axis, double *nodal)
   {
-    for (std::size_t i = 0; i < shape.on_axis.size(); ++i)
-      if (shape.on_axis[i])
+    for (std::size_t i = 0; i < on_axis.size(); ++i)
+      if (on_axis[i])
         nodal[i * dim] = 0.;
   }
 

@@ -409,7 +409,7 @@ namespace nsfd
       for (unsigned int i = 0; i < shape.n_nodes; ++i)
         field(cells_->place(b, shape.nodes[i]), unsigned(b),
               nodal.data() + i * dim);
-      hold_nodes(shape, nodal.data());
+      hold_nodes<dim>(shape.on_axis, nodal.data());
       double *out = unknowns.data() + bodies().first_dof[b];
       if (!body.rigid)
         std::copy(nodal.begin(), nodal.end(), out);

@@ -88,7 +88,8 @@ namespace nsfd
     }
     if (input_.axisymmetric) // of what acts radially there nothing moves
       for (std::size_t b = 0; b < cells.bodies.size(); ++b)
-        hold_nodes(cells.class_shape(b), &nodal[cells.first_node[b] * dim]);
+        hold_nodes<dim>(cells.class_shape(b).on_axis,
+                        &nodal[cells.first_node[b] * dim]);
   }
 
   template <int dim>

@@ -10,17 +10,26 @@
 namespace nsfd
 {
   template <int dim>
-  BodyHeat<dim>::BodyHeat(const Discretization<dim> &discretization,
-                          const Communicator &communicator)
-      : discretization_(discretization), communicator_(communicator),
-        conduction_(discretization, communicator)
+  std::vector<double>
+  initial_temperatures(const Discretization<dim> &discretization)
   {
+    std::vector<double> result;
     const auto &cells = discretization.cells();
     for (std::size_t b = 0; b < cells.bodies.size(); ++b)
       for (const auto &corner : cells.corners[b])
-        at_start_.push_back(discretization.input()
-                                .materials[cells.body_class(b).material]
-                                .heat->initial.at(corner));
+        result.push_back(discretization.input()
+                             .materials[cells.body_class(b).material]
+                             .heat->initial.at(corner));
+    return result;
+  }
+
+  template <int dim>
+  BodyHeat<dim>::BodyHeat(const Discretization<dim> &discretization,
+                          const Communicator &communicator)
+      : discretization_(discretization), communicator_(communicator),
+        conduction_(discretization, communicator),
+        at_start_(initial_temperatures(discretization))
+  {
   }
 
   template <int dim>
@@ -101,6 +110,8 @@ namespace nsfd
     heat.hottest_of_run = std::max(heat.hottest_of_run, heat.hottest);
   }
 
+  template std::vector<double> initial_temperatures(const Discretization<2> &);
+  template std::vector<double> initial_temperatures(const Discretization<3> &);
   template class BodyHeat<2>;
   template class BodyHeat<3>;
 } // namespace nsfd

@@ -8,6 +8,11 @@
 
 namespace nsfd
 {
+  /** As the materials say, K, by corner of the cells. */
+  template <int dim>
+  std::vector<double>
+  initial_temperatures(const Discretization<dim> &discretization);
+
   /**
    * The temperatures of the bodies from step to step: what friction, damage and
    * flow have taken warms the cells where it was taken, at once; it is
@@ -43,7 +48,7 @@ namespace nsfd
     const Discretization<dim> &discretization_;
     const Communicator &communicator_;
     HeatConduction<dim> conduction_;
-    std::vector<double> at_start_; ///< K, by corner
+    const std::vector<double> at_start_; ///< K, by corner
     unsigned long long iterations_ = 0;
   };
 } // namespace nsfd

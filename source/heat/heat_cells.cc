@@ -102,10 +102,8 @@ namespace nsfd
         for (unsigned int j = 1; j < n; ++j) {
           K(i - 1, j - 1) = cell.conduction[i * n + j];
           for (unsigned int s = 0; s < cell.n_slots; ++s)
-            F(i - 1, j - 1) +=
-                shape.slot_normals[s].norm() *
-                std::max(0., radius_or_one(shape, shape.slot_positions[s])) *
-                cell.fluxes[s * n + i] * cell.fluxes[s * n + j];
+            F(i - 1, j - 1) += slot_area(shape, s) * cell.fluxes[s * n + i] *
+                               cell.fluxes[s * n + j];
         }
       K.gauss_jordan();
       FullMatrix<double> product(n - 1, n - 1);

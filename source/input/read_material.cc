@@ -112,8 +112,8 @@ namespace nsfd
                                                "initial temperature"};
       const std::string share = "plastic heat share";
       if (!reader.optional(capacity, text)) {
-        reader.refuse(others, "there is no `heat capacity`");
-        reader.refuse({share}, "there is no `heat capacity`");
+        reader.refuse({others[0], others[1], share},
+                      "there is no `heat capacity`");
         return;
       }
       HeatOfMaterial &heat = material.heat.emplace();

@@ -25,7 +25,7 @@ namespace nsfd
           mean[i * dim] += shape.JxW[q] / shape.volume *
                            shape.values[q * shape.n_nodes + i] /
                            radius_at(shape, shape.positions[q]);
-      hold_nodes(shape, mean.data());
+      hold_nodes<dim>(shape.on_axis, mean.data());
     }
   } // namespace
 

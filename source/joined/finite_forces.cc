@@ -76,15 +76,6 @@ namespace nsfd
       }
       return here;
     }
-
-    /** Radial forces on the axis move nothing. */
-    template <int dim>
-    void hold(const std::vector<char> &on_axis, double *forces)
-    {
-      for (std::size_t i = 0; i < on_axis.size(); ++i)
-        if (on_axis[i])
-          forces[i * dim] = 0.;
-    }
   } // namespace
 
   template <int dim, int sdim>
@@ -236,9 +227,9 @@ namespace nsfd
       if (!divided_ || !divided_->is_ghost(cell)) {
         set_cell(cell);
         const std::size_t first = discretization_.bodies().first_dof[cell];
-        hold<dim>(tables(cell).on_axis, &forces_[first]);
+        hold_nodes<dim>(tables(cell).on_axis, &forces_[first]);
         if (!front_forces_.empty())
-          hold<dim>(tables(cell).on_axis, &front_forces_[first]);
+          hold_nodes<dim>(tables(cell).on_axis, &front_forces_[first]);
       }
     if (divided_)
       share_cells();

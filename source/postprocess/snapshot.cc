@@ -4,6 +4,7 @@
 #include "core/gather.h"
 #include "discretization/cell_sampler.h"
 #include "discretization/cells.h"
+#include "heat/body_heat.h"
 
 #include "discretization/cell_geometry.h"
 
@@ -90,17 +91,16 @@ namespace nsfd
                      });
       for (std::size_t b = 0; b < n_bodies_; ++b)
         stress_[b] /= volume[b];
-      const auto &cells = discretization.cells();
       const auto &T = state.heat.temperature;
-      for (std::size_t b = 0; !T.empty() && b < n_bodies_; ++b) {
-        const auto &corners = cells.corners[b];
-        const auto &heat = *discretization.input()
-                                .materials[cells.body_class(b).material]
-                                .heat;
+      if (T.empty())
+        return;
+      const auto before = initial_temperatures(discretization);
+      const std::size_t n = T.size() / n_bodies_;
+      for (std::size_t b = 0; b < n_bodies_; ++b) {
         double sum = 0.;
-        for (std::size_t v = 0; v < corners.size(); ++v)
-          sum += T[b * corners.size() + v] - heat.initial.at(corners[v]);
-        warmth_.push_back(sum / double(corners.size()));
+        for (std::size_t k = b * n; k < (b + 1) * n; ++k)
+          sum += T[k] - before[k];
+        warmth_.push_back(sum / double(n));
       }
     }
 

@@ -30,10 +30,7 @@ namespace nsfd
                                                                  : "pvd");
       return text;
     }
-  } // namespace
 
-  namespace
-  {
     std::optional<HeatRecord> heat_of(const SceneInput &input,
                                       const State &state, const double hottest)
     {

@@ -1,3 +1,4 @@
+#include "breathing_mode.h"
 #include "make_scene.h"
 
 #include "discretization/cells.h"
@@ -292,20 +293,9 @@ end
     // trapezoidal rule turns it in each step by 2 atan(omega h / 2).
     TEST(Axisymmetric, BreathingMode)
     {
-      const auto residual = [](const double k) {
-        return (lambda + 2. * mu) * k * std::cyl_bessel_j(0., k) -
-               2. * mu * std::cyl_bessel_j(1., k);
-      };
-      double low = 1., high = 3.;
-      while (high - low > 1e-14 * high)
-        ((residual(low) < 0.) == (residual((low + high) / 2.) < 0.) ? low
-                                                                    : high) =
-            (low + high) / 2.;
-      const double k = low, omega = k * std::sqrt(lambda + 2. * mu);
-      std::string bessel = "0"; // J_1(k x), to 1e-16
-      double factor = k / 2.;
-      for (int m = 0; m < 13; ++m, factor *= -k * k / 4. / (m * (m + 1.)))
-        bessel += fmt::format(" + {:.17g} * x^{}", factor, 2 * m + 1);
+      const test::BreathingMode mode(lambda, mu);
+      const std::string &bessel = mode.formula;
+      const double k = mode.k, omega = k * std::sqrt(lambda + 2. * mu);
       const auto left_after = [&](const unsigned int refinements) {
         Scene<2> scene(
             section("0, 0", "1, 0.5", "3, 2", 2) +

@@ -1,3 +1,4 @@
+#include "breathing_mode.h"
 #include "leapfrog_steps.h"
 
 #include "discretization/body_frequency.h"
@@ -257,20 +258,10 @@ end
     // sin(theta): what is left is the error of the cells, of order 2.
     TEST(AxisymmetricExplicit, BreathingMode)
     {
-      const auto residual = [](const double k) {
-        return (lambda + 2. * mu) * k * std::cyl_bessel_j(0., k) -
-               2. * mu * std::cyl_bessel_j(1., k);
-      };
-      double low = 1., high = 3.;
-      while (high - low > 1e-14 * high)
-        ((residual(low) < 0.) == (residual((low + high) / 2.) < 0.) ? low
-                                                                    : high) =
-            (low + high) / 2.;
-      const double k = low, omega = k * std::sqrt(lambda + 2. * mu), h = 0.01;
-      std::string bessel = "0"; // J_1(k x), to 1e-16
-      double factor = k / 2.;
-      for (int m = 0; m < 13; ++m, factor *= -k * k / 4. / (m * (m + 1.)))
-        bessel += fmt::format(" + {:.17g} * x^{}", factor, 2 * m + 1);
+      const test::BreathingMode mode(lambda, mu);
+      const std::string &bessel = mode.formula;
+      const double k = mode.k, omega = k * std::sqrt(lambda + 2. * mu),
+                   h = 0.01;
       const auto left_after = [&](const std::string &type,
                                   const unsigned int refinements) {
         Steps<2> run(scene({"1, 0.5", "6, 3", type},
