@@ -79,6 +79,12 @@ namespace nsfd
     {
       return joined_.count(pair_of(body_1, body_2)) > 0;
     }
+    /** Faces that hold lead from one to the other. */
+    bool are_one_piece(const unsigned int cell_1,
+                       const unsigned int cell_2) const
+    {
+      return piece_of_cell_[cell_1] == piece_of_cell_[cell_2];
+    }
     /**
      * Flat sides of a rigid body touch with their corners: not with nodes
      * inside of them and, where several of its faces meet, with one of each

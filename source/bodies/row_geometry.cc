@@ -20,11 +20,18 @@ namespace nsfd
         n[0] = edge[1];
         n[1] = -edge[0];
       } else {
-        const unsigned int last = row.n_facet == 3 ? 2 : 3,
-                           one = row.n_facet == 3 ? 0 : 1;
-        n = cross_product_3d(
-            Tensor<1, dim>(ends.of_1[row.n_facet == 3 ? 1 : 2] - ends.of_1[0]),
-            Tensor<1, dim>(ends.of_1[last] - ends.of_1[one]));
+        const auto &x = ends.of_1;
+        if (row.n_facet == 3)
+          n = cross_product_3d(Tensor<1, dim>(x[1] - x[0]),
+                               Tensor<1, dim>(x[2] - x[0]));
+        else {
+          // of the bilinear surface where they meet: along one that is warped
+          // nothing slides across its mean normal
+          const double s = row.weights[1] + row.weights[2],
+                       t = row.weights[2] + row.weights[3];
+          n = cross_product_3d((1. - t) * (x[1] - x[0]) + t * (x[2] - x[3]),
+                               (1. - s) * (x[3] - x[0]) + s * (x[2] - x[1]));
+        }
       }
       return n / n.norm();
     }

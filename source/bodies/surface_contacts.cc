@@ -146,11 +146,9 @@ namespace nsfd
 
   /** Of a facet with this key; none of Surfaces::no_key. */
   template <int dim>
-  int SurfaceContacts<dim>::body_of_key(const std::uint64_t key) const
+  int SurfaceContacts<dim>::cell_of_key(const std::uint64_t key) const
   {
-    const int cell =
-        places_.cell_of(key / ActiveSurfaces<dim>::pieces_per_face);
-    return cell < 0 ? -1 : int(table_.body_of_cell[std::size_t(cell)]);
+    return places_.cell_of(key / ActiveSurfaces<dim>::pieces_per_face);
   }
 
   /** Those of the face that a facet belongs to: first and behind the last. */
@@ -164,12 +162,14 @@ namespace nsfd
     return {first, first + cells_.faces(cell)[face].nodes.size()};
   }
 
-  /** The bounds of a @p place that was over a body in the last step. */
+  /** The bounds of a @p place that was over the piece of cell @p over in the
+      last step. */
   template <int dim>
   void SurfaceContacts<dim>::take(const State &old, const std::size_t place,
-                                  const int over, Row &row) const
+                                  const unsigned int over, Row &row) const
   {
-    if (body_of_key(old.surface_facet[place]) != over)
+    const int cell = cell_of_key(old.surface_facet[place]);
+    if (cell < 0 || !active_.are_one_piece(unsigned(cell), over))
       return;
     row.approach = std::max(row.approach, old.surface_approach[place]);
     row.overlap = std::max(row.overlap, old.surface_overlap[place]);
@@ -178,7 +178,8 @@ namespace nsfd
   template <int dim>
   void SurfaceContacts<dim>::take_at_vertex(const State &old,
                                             const unsigned int vertex,
-                                            const int over, Row &row) const
+                                            const unsigned int over,
+                                            Row &row) const
   {
     const auto &places = active_.set().places_by_vertex;
     for (auto p = std::lower_bound(places.begin(), places.end(),
@@ -200,9 +201,9 @@ namespace nsfd
     for (const bool own : {true, false}) {
       const auto places = places_of_face(own ? point.facet : pair.facet);
       for (std::size_t k = places[0]; k < places[1]; ++k)
-        take(old, k, own ? row.body_1 : int(row.body_2), row);
+        take(old, k, own ? row.facet_cell : row.cell, row);
     }
-    take_at_vertex(old, point.vertex, row.body_1, row);
+    take_at_vertex(old, point.vertex, row.facet_cell, row);
   }
 
   /** How deep a corner may be before it is seen: two bodies between which

@@ -103,11 +103,12 @@ namespace nsfd
                                 std::size_t index);
     std::size_t place_of_edge(const typename Surfaces<dim>::Edge &edge) const;
     Row edge_row(const EdgePair<dim> &pair, const State &old) const;
-    int body_of_key(std::uint64_t key) const;
+    int cell_of_key(std::uint64_t key) const;
     std::array<std::size_t, 2> places_of_face(unsigned int facet) const;
-    void take(const State &old, std::size_t place, int over, Row &row) const;
-    void take_at_vertex(const State &old, unsigned int vertex, int over,
-                        Row &row) const;
+    void take(const State &old, std::size_t place, unsigned int over,
+              Row &row) const;
+    void take_at_vertex(const State &old, unsigned int vertex,
+                        unsigned int over, Row &row) const;
     void take_over(const FacetPair<dim> &pair, const State &old,
                    Row &row) const;
     std::uint8_t mark_of(const State &old, unsigned int facet) const;

@@ -3,6 +3,7 @@
 #include "contact_detection/touching_rules.h"
 #include "core/gather.h"
 #include "obstacle_geometry.h"
+#include "settle_corners.h"
 
 #include "nsfd/scene/scene_input.h"
 
@@ -120,8 +121,11 @@ namespace nsfd
       row.rate += pair.normal[d] * away[d];
     if (row.gap < 0. && row.node != Row::nowhere) {
       if (old.surface_facet[row.place] == facet.side) {
+        // what nothing pushed in the last step has closed in it
         const double before = old.surface_gap[row.place];
-        row.approach = before > 0. ? before - row.gap : 0.;
+        const bool pushed = (old.surface_contact[row.place] & touches) != 0;
+        row.approach =
+            before > 0. || !pushed ? std::max(0., before - row.gap) : 0.;
       } else {
         // it may have come in from any side in the last step, or has not been
         // seen while only a corner of it overlapped
@@ -203,8 +207,8 @@ namespace nsfd
       row.overlap =
           std::min(-row.gap, crease * std::sqrt(way[0].norm() * way[1].norm()));
       for (unsigned int v = 0; v < 2; ++v) {
-        take_at_vertex(old, edge.vertex[v], row.body_1, row);
-        take_at_vertex(old, other.vertex[v], int(row.body_2), row);
+        take_at_vertex(old, edge.vertex[v], row.facet_cell, row);
+        take_at_vertex(old, other.vertex[v], row.cell, row);
       }
     }
     // as of a corner of a facet with these sides
@@ -262,6 +266,7 @@ namespace nsfd
           return blocks_.of(a, b) < 0 || active_.are_joined(a, b);
         },
         pairs_);
+    settle_corners(active_, 1e-9 * discretization_.extent(), pairs_.points);
     seen_.clear();
     for (const auto &pair : pairs_.points) {
       const auto &origin = active_.set().point_origins[pair.index];

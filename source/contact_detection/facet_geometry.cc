@@ -69,11 +69,13 @@ namespace nsfd
       return {(1. - s) * (1. - t), s * (1. - t), s * t, (1. - s) * t};
     }
 
-    /** Newton's method: one step for a parallelogram, few for other shapes. */
+    /** Newton's method: one step for a parallelogram, few for other shapes. At
+        most @p beyond of its sides past them. */
     std::array<double, 4> quadrilateral_weights(const Facet3 &facet,
                                                 const Place<3> &normal,
                                                 const double *x,
-                                                const Place<3> &y)
+                                                const Place<3> &y,
+                                                const double beyond)
     {
       const Place<3> v0 = place<3>(x, facet.vertex[0]),
                      v1 = place<3>(x, facet.vertex[1]),
@@ -91,13 +93,40 @@ namespace nsfd
         const double area = dot(ds, across_t);
         const double step_s = dot(rest, across_t) / area;
         const double step_t = dot(rest, cross(normal, ds)) / area;
-        s = std::clamp(s + step_s, 0., 1.);
-        t = std::clamp(t + step_t, 0., 1.);
+        s = std::clamp(s + step_s, -beyond, 1. + beyond);
+        t = std::clamp(t + step_t, -beyond, 1. + beyond);
         // convergence is quadratic: the error left is the square of this
         if (std::abs(step_s) + std::abs(step_t) < same_length)
           break;
       }
       return bilinear_weights(s, t);
+    }
+
+    FacetPlace<3> foot_of(const Facet3 &facet, const Plane<3> &plane,
+                          const double *x, const Place<3> &y,
+                          const double beyond)
+    {
+      FacetPlace<3> result;
+      result.weights =
+          facet.n_vertices == 4
+              ? quadrilateral_weights(facet, plane.normal, x, y, beyond)
+              : triangle_weights(facet, plane.normal, x, y);
+      result.place = place_at(facet, x, result.weights);
+      return result;
+    }
+
+    /** 0 to 1 between the ends. */
+    double share_of_line(const Plane<2> &plane, const Place<2> &y)
+    {
+      return 0.5 +
+             dot(along(plane.normal), difference(y, plane.centre)) / plane.size;
+    }
+
+    FacetPlace<2> place_on_line(const Plane<2> &plane, const double share)
+    {
+      return {
+          sum(plane.centre, (share - 0.5) * plane.size, along(plane.normal)),
+          {1. - share, share, 0., 0.}};
     }
 
     FacetPlace<3> closest_on_edges(const Facet3 &facet, const double *x,
@@ -177,10 +206,7 @@ namespace nsfd
   FacetPlace<2> closest_place<2>(const Facet2 &, const Plane<2> &plane,
                                  const double *, const Place<2> &y)
   {
-    const Place<2> t = along(plane.normal);
-    const double s = std::clamp(
-        0.5 + dot(t, difference(y, plane.centre)) / plane.size, 0., 1.);
-    return {sum(plane.centre, (s - 0.5) * plane.size, t), {1. - s, s, 0., 0.}};
+    return place_on_line(plane, std::clamp(share_of_line(plane, y), 0., 1.));
   }
 
   template <>
@@ -189,12 +215,24 @@ namespace nsfd
   {
     if (!inside_edges(facet, plane.normal, x, y, 0.))
       return closest_on_edges(facet, x, y);
-    FacetPlace<3> result;
-    result.weights = facet.n_vertices == 4
-                         ? quadrilateral_weights(facet, plane.normal, x, y)
-                         : triangle_weights(facet, plane.normal, x, y);
-    result.place = place_at(facet, x, result.weights);
-    return result;
+    return foot_of(facet, plane, x, y, 0.);
+  }
+
+  template <>
+  FacetPlace<2> extended_place<2>(const Facet2 &, const Plane<2> &plane,
+                                  const double *, const Place<2> &y)
+  {
+    return place_on_line(plane, share_of_line(plane, y));
+  }
+
+  template <>
+  FacetPlace<3> extended_place<3>(const Facet3 &facet, const Plane<3> &plane,
+                                  const double *x, const Place<3> &y)
+  {
+    // nodes that touch are seldom further out than their inset, see
+    // touching_rules.h
+    constexpr double beyond = 0.25;
+    return foot_of(facet, plane, x, y, beyond);
   }
 
   template void set_planes<2>(const Surfaces<2> &, const double *,

@@ -96,4 +96,15 @@ namespace nsfd
   FacetPlace<dim> closest_place(const typename Surfaces<dim>::Facet &facet,
                                 const Plane<dim> &plane, const double *x,
                                 const Place<dim> &y);
+
+  /**
+   * The foot of y along the normal, also where it is past the ends of the
+   * facet: then some weights are negative. A node a little past an end gives
+   * and gets its impulse at one place, and its distance changes with the
+   * velocities that these weights say.
+   */
+  template <int dim>
+  FacetPlace<dim> extended_place(const typename Surfaces<dim>::Facet &facet,
+                                 const Plane<dim> &plane, const double *x,
+                                 const Place<dim> &y);
 } // namespace nsfd

@@ -14,6 +14,7 @@ namespace nsfd
       FacetPair<dim> pair;
       double opposed = 0.;  ///< cosine between the two outward normals
       bool is_kept = false; ///< the side of the last step
+      bool cuts = false;    ///< like a blade of scissors: both tips are outside
     };
 
     template <int dim>
@@ -44,9 +45,16 @@ namespace nsfd
         touch.pair.inset = inset * norm(to_centre);
         for (; begin != end; ++begin) {
           touch.is_kept = surfaces_.facets[*begin].side == point.last_side;
-          if (touches_facet(own, *begin, y, inside, touch))
-            valid_.push_back(touch);
+          if (!touches_facet(own, *begin, y, inside, touch))
+            continue;
+          // such a tip has not come through the facet, but through another one
+          // or none; deeper than this it would have been seen before
+          touch.cuts = touch.cuts &&
+                       (touch.is_kept || -touch.pair.gap <= touch.pair.inset);
+          (touch.cuts ? touches : valid_).push_back(touch);
         }
+        if (valid_.empty())
+          return;
         if (valid_.size() == 1 || (!valid_.empty() && !surfaces_.all_wholes))
           touches.push_back(*kept(best(valid_, same_length * own.size)));
         else
@@ -65,7 +73,7 @@ namespace nsfd
         const auto &facet_b = surfaces_.facets[b.pair.facet];
         const double rounding =
             same_length * std::min(own_size(a), own_size(b));
-        if (facet_a.whole != facet_b.whole ||
+        if (facet_a.whole != facet_b.whole || a.cuts || b.cuts ||
             std::max(a.pair.gap, b.pair.gap) > rounding || notch(a, b))
           return false;
         if (a.is_kept != b.is_kept)
@@ -146,20 +154,25 @@ namespace nsfd
         if (!projects_into<dim>(facet, plane, x_, inside) &&
             !(touch.is_kept && projects_into<dim>(facet, plane, x_, y)))
           return false;
-        const auto foot = closest_place<dim>(facet, plane, x_, y);
+        const auto foot = extended_place<dim>(facet, plane, x_, y);
         touch.pair.facet = f;
         touch.pair.gap = dot(plane.normal, difference(y, foot.place));
         touch.pair.normal = plane.normal;
         touch.pair.closest = foot.place;
         touch.pair.weights = foot.weights;
         touch.is_kept = touch.is_kept && touch.pair.gap <= 0.;
-        return (fits || touch.is_kept) && within(touch.pair.gap, depth) &&
-               !(touch.pair.gap < -same_length * own.size &&
-                 is_outside(f, y, foot.place, touch.is_kept,
-                            same_length * own.size) &&
-                 !cuts(touch.pair.index, f)) &&
-               !(touch.pair.gap < -same_length * own.size && !touch.is_kept &&
-                 came_through_next(touch, y));
+        touch.cuts = false;
+        if (!(fits || touch.is_kept) || !within(touch.pair.gap, depth))
+          return false;
+        const double rounding = same_length * own.size;
+        if (!(touch.pair.gap < -rounding))
+          return true;
+        if (is_outside(f, y, foot.place, touch.is_kept, rounding)) {
+          touch.cuts = cuts(touch.pair.index, f);
+          if (!touch.cuts)
+            return false;
+        }
+        return touch.is_kept || !came_through_next(touch, y);
       }
 
       /**

@@ -350,6 +350,7 @@ namespace nsfd
   template <int dim>
   std::vector<std::string> Extremes<dim>::finish(const State &state)
   {
+    look_at_overlap(state);
     if (!input_.large_motion)
       look_at_cells(state);
     else if (has_stride_) // of explicit steps, whose motion is known now

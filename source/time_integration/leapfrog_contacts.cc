@@ -57,16 +57,10 @@ namespace nsfd
         for (unsigned int c = 0; c < dim; ++c)
           y[c] = ends.of_2[0][c];
         const auto plane = plane_of<dim>(facet, x.data());
-        row.weights = closest_place<dim>(facet, plane, x.data(), y).weights;
-        if (dim == 2) {
-          // of the whole line: a corner may be a little past the end, and both
-          // bodies get the impulse at one place
-          const Tensor<1, dim> side = ends.of_1[1] - ends.of_1[0];
-          const double s =
-              side * (ends.of_2[0] - ends.of_1[0]) / side.norm_square();
-          row.weights[0] = 1. - s;
-          row.weights[1] = s;
-        }
+        row.weights =
+            (is_ball(row) ? closest_place<dim>(facet, plane, x.data(), y)
+                          : extended_place<dim>(facet, plane, x.data(), y))
+                .weights;
       }
     }
 

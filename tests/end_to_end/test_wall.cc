@@ -67,6 +67,14 @@ namespace end_to_end::test_wall
                         // acute corners that cut through each other
                         Seed{30088, "large explicit breakable contact"},
                         Seed{30290, "large explicit breakable contact"},
+                        // a corner that slides past the end of a facet
+                        Seed{60025, "large explicit breakable contact"},
+                        // flush blocks that close without having touched
+                        Seed{60237, "large auto elastic contact"},
+                        // tips in the mouth of a crack
+                        Seed{60313, "large moreau-jean breakable contact"},
+                        // a corner that goes on to the next cell of a plate
+                        Seed{60120, "large moreau-jean mixed contact"},
                         // tips that are in each other, and turn
                         Seed{30243, "large explicit breakable contact"},
                         // a surface that bulges between its nodes

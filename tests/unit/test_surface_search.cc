@@ -38,13 +38,16 @@ namespace surface_scene::test_surface_search
     EXPECT_EQ(count({-0.011, 0.1}), 0u);
   }
 
-  TEST(SurfaceSearch, PlaceBeyondTheEndIsTheEnd)
+  // Both bodies get their impulse at one place, a little past the end of the
+  // facet (by 0.005 of 4).
+  TEST(SurfaceSearch, PlaceBeyondTheEndIsAcross)
   {
     const auto pairs = point_over_floor({-0.005, 0.1}).find(0.5);
     ASSERT_EQ(pairs.points.size(), 1u);
     EXPECT_NEAR(pairs.points[0].gap, 0.1, 1e-15);
-    EXPECT_NEAR(pairs.points[0].closest[0], 0., 1e-15);
-    EXPECT_NEAR(pairs.points[0].weights[1], 1., 1e-15);
+    EXPECT_NEAR(pairs.points[0].closest[0], -0.005, 1e-15);
+    EXPECT_NEAR(pairs.points[0].weights[0], -0.00125, 1e-15);
+    EXPECT_NEAR(pairs.points[0].weights[1], 1.00125, 1e-15);
   }
 
   TEST(SurfaceSearch, FacetsThatDoNotOpposeNeverTouch)
@@ -147,6 +150,29 @@ namespace surface_scene::test_surface_search
       }
       EXPECT_EQ(inside, (std::set<unsigned int>{1, 3})) << fall;
     }
+  }
+
+  // A crack ends where the tip of body 2 presses on the front of body 0: the
+  // tip is in the mouth of the crack, below its lower face and outside of body
+  // 0, whose own tip it has passed. It is held by both, or the fronts would
+  // pass through each other.
+  TEST(SurfaceSearch, BladesOfScissorsInTheMouthOfACrack)
+  {
+    Scene<2> scene;
+    add_polygon(scene, 0, {{0.015, -1.}, {0.015, 1.}, {-1., 0.}}); // 100 to 102
+    add_polygon(scene, 1, {{0.05, -1.04}, {-0.95, -0.04}, {-1., -1.04}});
+    add_polygon(scene, 2, {{-0.002, -0.995}, {1., 0.}, {-0.002, 0.995}});
+    for (auto &facet : scene.surfaces.facets)
+      facet.whole = facet.body == 2 ? 1 : 0; // cracked, in one piece
+    scene.surfaces.all_wholes = true;
+    scene.all_points();
+    std::map<std::uint64_t, double> gaps; // of the tip
+    for (const auto &pair : scene.find(1e-3).points)
+      if (scene.surfaces.points[pair.index].vertex == 6)
+        gaps[scene.surfaces.facets[pair.facet].key] = pair.gap;
+    ASSERT_EQ(gaps.size(), 2u);
+    EXPECT_NEAR(gaps.at(100), -0.017, 1e-15);
+    EXPECT_NEAR(gaps.at(103), -0.007 / std::sqrt(2.), 1e-15);
   }
 
   // Two sides lie on each other, by 0.0006 at one end and 0.02 at the other,
