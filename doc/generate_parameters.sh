@@ -588,6 +588,14 @@ END
   sections prm/benchmarks/branching.prm 'Adaptivity|Indicator: front'
   cat <<'END'
 
+## Heat: `prm/benchmarks/brake_block.prm`
+
+[materials.md](materials.md#heat) says what they mean.
+
+END
+  sections prm/benchmarks/brake_block.prm 'Interface: lining|Boundary: top'
+  cat <<'END'
+
 ## All names: `./nsfd --list`
 
 ```

@@ -14,7 +14,7 @@ namespace nsfd
    */
   namespace checkpoint_file
   {
-    constexpr unsigned int format = 11;
+    constexpr unsigned int format = 12;
     constexpr std::size_t head_size = 512;
 
     /** Number and commit of this program. */

@@ -44,6 +44,9 @@ namespace nsfd
           if ((boundary.has_traction || boundary.has_pressure) &&
               groups.holds_boundary_face(boundary.where, cell, f))
             faces_.push_back({body, f, b});
+          if ((boundary.temperature || boundary.heat_flux) &&
+              groups.holds_boundary_face(boundary.where, cell, f))
+            heated_faces_.push_back({body, f, b});
         }
       ++body;
     }

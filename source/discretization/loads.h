@@ -41,6 +41,14 @@ namespace nsfd
     {
       return absorbing_faces_;
     }
+    struct LoadedFace {
+      unsigned int body, face, boundary;
+    };
+    /** With a given temperature or heat flux. */
+    const std::vector<LoadedFace> &heated_faces() const
+    {
+      return heated_faces_;
+    }
 
     /** Add those at time @p t to a nodal vector; sides that @p clock has
         stopped keep theirs. */
@@ -53,10 +61,7 @@ namespace nsfd
 
     const SceneInput &input_;
     bool any_ = false, depend_on_time_ = false;
-    struct LoadedFace {
-      unsigned int body, face, boundary;
-    };
-    std::vector<LoadedFace> faces_;
+    std::vector<LoadedFace> faces_, heated_faces_;
     std::unique_ptr<const InitialStress<dim>> initial_stress_; ///< or null
     std::vector<AbsorbingFace> absorbing_faces_;
   };

@@ -33,6 +33,24 @@ namespace nsfd
                    ScatterOf::toughness)};
   }
 
+  PointFactors warm_factors(const InterfaceInput &block, const double T)
+  {
+    return {block.heat.strength.at(T), block.heat.toughness.at(T)};
+  }
+
+  double friction_factor(const SceneInput &input, const PointOrigin &origin,
+                         const double T)
+  {
+    switch (origin.kind) {
+    case PointOrigin::Kind::interface:
+      return input.interfaces[origin.block].heat.friction.at(T);
+    case PointOrigin::Kind::obstacle:
+      return input.obstacles[origin.block].friction_factor.at(T);
+    default:
+      return 1.;
+    }
+  }
+
   template <int dim>
   void check_point_factors(const SceneInput &input,
                            const Discretization<dim> &discretization,

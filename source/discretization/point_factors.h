@@ -1,5 +1,7 @@
 #pragma once
 
+#include "nsfd/discretization/point_origin.h"
+
 #include <string>
 #include <vector>
 
@@ -23,6 +25,13 @@ namespace nsfd
   template <int dim>
   PointFactors point_factors(const InterfaceInput &block,
                              const double *position, double extent);
+
+  /** Of a point at the temperature @p T (K), times those. */
+  PointFactors warm_factors(const InterfaceInput &block, double T);
+
+  /** What mu of a point is times at the temperature @p T (K). */
+  double friction_factor(const SceneInput &input, const PointOrigin &origin,
+                         double T);
 
   /** A sentence for every expression that is not positive. Collective. */
   template <int dim>

@@ -28,15 +28,18 @@ namespace nsfd
                           const Communicator &communicator)
       : discretization_(discretization), communicator_(communicator),
         conduction_(discretization, communicator),
-        at_start_(initial_temperatures(discretization))
+        at_start_(initial_temperatures(discretization)),
+        laws_(has_warm_faces(discretization.input()))
   {
   }
 
   template <int dim>
-  void BodyHeat<dim>::start(State &state) const
+  void BodyHeat<dim>::start(State &state)
   {
     state.heat.temperature = at_start_;
     state.heat.conducted_until = state.time;
+    set_faces(state);
+    state.heat.of_laws = state.heat.at_faces;
     measure(state, 0.);
     state.heat.hottest_of_run = state.heat.hottest;
   }
@@ -69,10 +72,32 @@ namespace nsfd
     const double waited = state.time - heat.conducted_until;
     if (conduction_.conducts() && waited >= conduction_.longest_step()) {
       show();
-      iterations_ += conduction_.conduct(waited, state, T);
+      const auto step = conduction_.conduct(waited, state, T);
+      iterations_ += step.iterations;
+      heat.given += step.given;
       heat.conducted_until = state.time;
     }
+    set_faces(state);
     measure(state, communicator_.sum(taken));
+  }
+
+  /**
+   * For the laws of the next step. A law that is partly open keeps its
+   * temperature: its energy would change without work. What explicit steps
+   * keep of their points by themselves is theirs, see LeapfrogPoints.
+   */
+  template <int dim>
+  void BodyHeat<dim>::set_faces(State &state)
+  {
+    if (!laws_)
+      return;
+    HeatState &heat = state.heat;
+    heat.at_faces = conduction_.at_faces(heat.temperature);
+    for (std::size_t i = 0; i < heat.of_laws.size(); ++i)
+      if ((state.kind[i] == PointKind::rigid ||
+           state.kind[i] == PointKind::bonded) &&
+          state.opening_max[i] == 0.)
+        heat.of_laws[i] = heat.at_faces[i];
   }
 
   template <int dim>

@@ -28,7 +28,7 @@ namespace nsfd
              const Communicator &communicator);
 
     /** As the materials say, at t = 0. Collective. */
-    void start(State &state) const;
+    void start(State &state);
 
     /**
      * The step to @p state was taken, which has what it has dissipated.
@@ -44,11 +44,13 @@ namespace nsfd
 
   private:
     void measure(State &state, double made) const;
+    void set_faces(State &state);
 
     const Discretization<dim> &discretization_;
     const Communicator &communicator_;
     HeatConduction<dim> conduction_;
     const std::vector<double> at_start_; ///< K, by corner
+    const bool laws_;                    ///< or friction depend on temperature
     unsigned long long iterations_ = 0;
   };
 } // namespace nsfd

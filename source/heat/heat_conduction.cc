@@ -1,6 +1,7 @@
 #include "heat_conduction.h"
 
 #include "discretization/cells.h"
+#include "discretization/loads.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <fmt/format.h>
@@ -20,6 +21,7 @@ namespace nsfd
   {
     find_sides();
     find_bounds();
+    find_heated();
     const double fastest = communicator.max(cells_.fastest());
     // 4 kappa / l^2 is the rate of a bar of length l
     if (fastest > 0.)
@@ -35,6 +37,7 @@ namespace nsfd
     const auto put = [&](const std::size_t b, const std::size_t slot,
                          const unsigned int point, const unsigned int side) {
       sides_[point][side] = {int(b), unsigned(slot - bodies.first_slot[b])};
+      ends_.emplace_back(point, side);
     };
     for (std::size_t b = 0; b < bodies.size(); ++b)
       for (std::size_t s = bodies.first_slot[b]; s < bodies.first_slot[b + 1];
@@ -52,6 +55,65 @@ namespace nsfd
       message.out.resize(neighbor.points.size());
       message.in.resize(neighbor.points.size());
     }
+  }
+
+  template <int dim>
+  void HeatConduction<dim>::find_heated()
+  {
+    const auto &cells = discretization_.cells();
+    const auto &boundaries = discretization_.input().boundaries;
+    const typename Loads<dim>::LoadedFace *of_temperature = nullptr;
+    for (const auto &face : discretization_.loads().heated_faces()) {
+      if (boundaries[face.boundary].temperature) {
+        if (of_temperature && of_temperature->body == face.body &&
+            of_temperature->face == face.face)
+          continue; // the first one holds
+        of_temperature = &face;
+      }
+      const auto of_body = cells.shape(face.body);
+      const BodyShape<dim> &shape = *of_body;
+      for (unsigned int s = 0; s < shape.slot_faces.size(); ++s)
+        if (shape.slot_faces[s] == face.face)
+          heated_.push_back({{int(face.body), s},
+                             face.boundary,
+                             slot_area(shape, s),
+                             2. * cells_.of(face.body).flux_bound,
+                             cells.place(face.body, shape.slot_positions[s])});
+    }
+  }
+
+  template <int dim>
+  bool HeatConduction<dim>::has_temperature(const Heated &slot) const
+  {
+    return bool(discretization_.input().boundaries[slot.boundary].temperature);
+  }
+
+  /** At the end of the step. */
+  template <int dim>
+  void HeatConduction<dim>::set_heated(const State &state)
+  {
+    for (Heated &slot : heated_) {
+      const auto &boundary = discretization_.input().boundaries[slot.boundary];
+      slot.given =
+          (boundary.temperature ? *boundary.temperature : *boundary.heat_flux)
+              .at(slot.place, state.clock.at(slot.boundary, state.time));
+    }
+  }
+
+  /** Of values @p x at corners, on the outward normal. */
+  template <int dim>
+  auto HeatConduction<dim>::trace_of(const Side &side, const double *x) const
+      -> Trace
+  {
+    const unsigned int n = cells_.n_corners();
+    const HeatCell &cell = cells_.of(std::size_t(side.cell));
+    const double *const X = x + std::size_t(side.cell) * n;
+    Trace trace;
+    for (unsigned int v = 0; v < n; ++v) {
+      trace.value += cell.values[std::size_t(side.slot) * n + v] * X[v];
+      trace.flux += cell.fluxes[std::size_t(side.slot) * n + v] * X[v];
+    }
+    return trace;
   }
 
   /** What the other sides of shared points have. */
@@ -103,22 +165,45 @@ namespace nsfd
                                  std::vector<double> &temperature) const
   {
     const unsigned int n = cells_.n_corners();
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points.empty())
+      return;
+    for (const auto &[i, s] : ends_) {
       if (points[i] == 0.)
         continue;
+      const Side &side = sides_[i][s];
+      const double energy =
+          points[i] * (s == 0 ? share_1_[i] : 1. - share_1_[i]);
+      const HeatCell &cell = cells_.of(std::size_t(side.cell));
+      double *const T = &temperature[std::size_t(side.cell) * n];
+      const double *const N = &cell.values[std::size_t(side.slot) * n];
+      for (unsigned int v = 0; v < n; ++v)
+        T[v] += energy * N[v] / cell.capacity[v];
+    }
+  }
+
+  template <int dim>
+  std::vector<double>
+  HeatConduction<dim>::at_faces(const std::vector<double> &temperature)
+  {
+    const unsigned int n = cells_.n_corners();
+    std::vector<std::array<Trace, 2>> traces(sides_.size());
+    for (std::size_t i = 0; i < sides_.size(); ++i)
       for (unsigned int s = 0; s < 2; ++s) {
         const Side &side = sides_[i][s];
         if (side.cell < 0)
           continue;
-        const double energy =
-            points[i] * (s == 0 ? share_1_[i] : 1. - share_1_[i]);
-        const HeatCell &cell = cells_.of(std::size_t(side.cell));
-        double *const T = &temperature[std::size_t(side.cell) * n];
-        const double *const N = &cell.values[std::size_t(side.slot) * n];
+        const double *const N = &cells_.of(std::size_t(side.cell))
+                                     .values[std::size_t(side.slot) * n];
         for (unsigned int v = 0; v < n; ++v)
-          T[v] += energy * N[v] / cell.capacity[v];
+          traces[i][s].value +=
+              N[v] * temperature[std::size_t(side.cell) * n + v];
       }
-    }
+    exchange(traces, 713);
+    std::vector<double> result(sides_.size());
+    for (std::size_t i = 0; i < result.size(); ++i)
+      result[i] = share_1_[i] * traces[i][0].value +
+                  (1. - share_1_[i]) * traces[i][1].value;
+    return result;
   }
 
   /** 1/h of a point, m^2 K / W. */
@@ -148,13 +233,16 @@ namespace nsfd
   {
     const auto &weight = discretization_.points().weight;
     faces_.clear();
+    face_of_.assign(bound_.size(), -1);
     for (std::size_t i = 0; i < bound_.size(); ++i) {
       if (bound_[i] == 0.)
         continue;
       const double R = resistance(i, state), g = 1. / bound_[i], w = weight[i];
-      if (std::isfinite(R))
-        faces_.push_back(
-            {unsigned(i), -w * g / (R + g), w / (R + g), -w * g * R / (R + g)});
+      if (!std::isfinite(R))
+        continue;
+      face_of_[i] = int(faces_.size());
+      faces_.push_back(
+          {unsigned(i), -w * g / (R + g), w / (R + g), -w * g * R / (R + g)});
     }
   }
 
@@ -179,35 +267,40 @@ namespace nsfd
         const Side &side = sides_[face.point][s];
         if (side.cell < 0)
           continue;
-        const HeatCell &cell = cells_.of(std::size_t(side.cell));
-        const double *const X = &x[std::size_t(side.cell) * n];
-        Trace trace;
-        for (unsigned int v = 0; v < n; ++v) {
-          trace.value += cell.values[std::size_t(side.slot) * n + v] * X[v];
-          trace.flux += cell.fluxes[std::size_t(side.slot) * n + v] * X[v];
-        }
+        Trace trace = trace_of(side, x.data());
         if (s == 1) // its outward normal is the other way
           trace.flux = -trace.flux;
         traces_[face.point][s] = trace;
       }
     exchange(traces_, 712);
-    for (const Face &face : faces_) {
-      const auto &[one, two] = traces_[face.point];
+    for (const auto &[point, s] : ends_) {
+      if (face_of_[point] < 0)
+        continue;
+      const Face &face = faces_[std::size_t(face_of_[point])];
+      const auto &[one, two] = traces_[point];
       const double jump = one.value - two.value,
                    q = 0.5 * (one.flux + two.flux),
                    on_jump = length * (face.mixed * q + face.jump * jump),
                    on_flux = length * (face.mixed * jump + face.flux * q) / 2.;
-      for (unsigned int s = 0; s < 2; ++s) {
-        const Side &side = sides_[face.point][s];
-        if (side.cell < 0)
-          continue;
-        const HeatCell &cell = cells_.of(std::size_t(side.cell));
-        double *const Y = &y[std::size_t(side.cell) * n];
-        const double sign = s == 0 ? 1. : -1.;
-        for (unsigned int v = 0; v < n; ++v)
-          Y[v] +=
-              sign * (on_jump * cell.values[std::size_t(side.slot) * n + v] +
-                      on_flux * cell.fluxes[std::size_t(side.slot) * n + v]);
+      const Side &side = sides_[point][s];
+      const HeatCell &cell = cells_.of(std::size_t(side.cell));
+      double *const Y = &y[std::size_t(side.cell) * n];
+      const double sign = s == 0 ? 1. : -1.;
+      for (unsigned int v = 0; v < n; ++v)
+        Y[v] += sign * (on_jump * cell.values[std::size_t(side.slot) * n + v] +
+                        on_flux * cell.fluxes[std::size_t(side.slot) * n + v]);
+    }
+    for (const Heated &slot : heated_) {
+      if (!has_temperature(slot))
+        continue;
+      const Trace trace = trace_of(slot.side, x.data());
+      const HeatCell &cell = cells_.of(std::size_t(slot.side.cell));
+      double *const Y = &y[std::size_t(slot.side.cell) * n];
+      for (unsigned int v = 0; v < n; ++v) {
+        const std::size_t k = std::size_t(slot.side.slot) * n + v;
+        Y[v] += length * slot.weight *
+                ((slot.bound * trace.value - trace.flux) * cell.values[k] -
+                 trace.value * cell.fluxes[k]);
       }
     }
   }
@@ -223,30 +316,42 @@ namespace nsfd
         result[b * n + i] =
             cell.capacity[i] + length * cell.conduction[i * n + i];
     }
-    for (const Face &face : faces_)
-      for (const Side &side : sides_[face.point]) {
-        if (side.cell < 0)
-          continue;
-        const HeatCell &cell = cells_.of(std::size_t(side.cell));
-        for (unsigned int v = 0; v < n; ++v) {
-          const double N = cell.values[std::size_t(side.slot) * n + v],
-                       f = cell.fluxes[std::size_t(side.slot) * n + v];
-          result[std::size_t(side.cell) * n + v] +=
-              length *
-              (face.mixed * f * N + face.jump * N * N + face.flux * f * f / 4.);
-        }
+    for (const auto &[point, s] : ends_) {
+      if (face_of_[point] < 0)
+        continue;
+      const Face &face = faces_[std::size_t(face_of_[point])];
+      const Side &side = sides_[point][s];
+      const HeatCell &cell = cells_.of(std::size_t(side.cell));
+      for (unsigned int v = 0; v < n; ++v) {
+        const double N = cell.values[std::size_t(side.slot) * n + v],
+                     f = cell.fluxes[std::size_t(side.slot) * n + v];
+        result[std::size_t(side.cell) * n + v] +=
+            length *
+            (face.mixed * f * N + face.jump * N * N + face.flux * f * f / 4.);
       }
+    }
+    for (const Heated &slot : heated_) {
+      if (!has_temperature(slot))
+        continue;
+      const HeatCell &cell = cells_.of(std::size_t(slot.side.cell));
+      for (unsigned int v = 0; v < n; ++v) {
+        const std::size_t k = std::size_t(slot.side.slot) * n + v;
+        const double N = cell.values[k];
+        result[std::size_t(slot.side.cell) * n + v] +=
+            length * slot.weight * N * (slot.bound * N - 2. * cell.fluxes[k]);
+      }
+    }
     return result;
   }
 
   template <int dim>
-  unsigned int HeatConduction<dim>::conduct(const double length,
-                                            const State &state,
-                                            std::vector<double> &temperature)
+  auto HeatConduction<dim>::conduct(const double length, const State &state,
+                                    std::vector<double> &temperature) -> Step
   {
     // of the residual, relative: the digits that sums have
     constexpr double tolerance = 1e-13;
     set_faces(state);
+    set_heated(state);
     traces_.resize(sides_.size());
     const std::size_t n = temperature.size();
     const auto dot = [&](const std::vector<double> &a,
@@ -261,6 +366,16 @@ namespace nsfd
       for (unsigned int i = 0; i < m; ++i)
         r[b * m + i] = cells_.of(b).capacity[i] * temperature[b * m + i] -
                        product[b * m + i];
+    for (const Heated &slot : heated_) {
+      const HeatCell &cell = cells_.of(std::size_t(slot.side.cell));
+      for (unsigned int v = 0; v < m; ++v) {
+        const std::size_t at = std::size_t(slot.side.slot) * m + v;
+        const double N = cell.values[at];
+        r[std::size_t(slot.side.cell) * m + v] +=
+            length * slot.weight * slot.given *
+            (has_temperature(slot) ? slot.bound * N - cell.fluxes[at] : N);
+      }
+    }
     const std::vector<double> D = diagonal(length);
     const auto precondition = [&] {
       for (std::size_t k = 0; k < n; ++k)
@@ -293,7 +408,17 @@ namespace nsfd
     }
     for (std::size_t i = 0; i < n; ++i)
       temperature[i] += change[i];
-    return k;
+    std::vector<double> given;
+    for (const Heated &slot : heated_) {
+      double flux = slot.given;
+      if (has_temperature(slot)) {
+        const Trace trace = trace_of(slot.side, temperature.data());
+        flux = trace.flux - slot.bound * (trace.value - slot.given);
+      }
+      given.push_back(length * slot.weight * flux);
+    }
+    const bool heats = has_heated_sides(discretization_.input());
+    return {k, heats ? communicator_.sum(given) : 0.};
   }
 
   template class HeatConduction<2>;

@@ -6,6 +6,7 @@
 #include "state/state.h"
 
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace nsfd
@@ -24,7 +25,11 @@ namespace nsfd
    *
    * positive for 1/g at least the flux_bound of both cells, and what leaves
    * one of them enters the other to the last bit. Sides of the scene are
-   * adiabatic.
+   * adiabatic, or have a flux q_g or a temperature T_g,
+   *
+   *   ... + < -q_T v - q_v (T - T_g) + (T - T_g) v / g >,
+   *
+   * with 1/g twice the bound, so that half of the form of a cell is left.
    */
   template <int dim>
   class HeatConduction
@@ -41,18 +46,26 @@ namespace nsfd
         conduct more often. */
     double longest_step() const { return longest_step_; }
 
+    /** K, by point: those of the sides in the ratio of warm(), in which bodies
+        of two temperatures that meet have it. Collective. */
+    std::vector<double> at_faces(const std::vector<double> &temperature);
+
     /** What the @p points have dissipated, J, goes to the corners of both
         sides: by their effusivity, or in halves where one does not conduct. */
     void warm(const std::vector<double> &points,
               std::vector<double> &temperature) const;
 
+    struct Step {
+      unsigned int iterations = 0;
+      double given = 0.; ///< by sides of all ranks, J
+    };
     /**
-     * A step of @p length (s) by the backward Euler rule, at the faces of
-     * @p state. Collective. Returns the number of iterations. @throws
-     * std::runtime_error if there are too many.
+     * A step of @p length (s) by the backward Euler rule, at the faces and the
+     * time of @p state. Collective. @throws std::runtime_error if there are too
+     * many iterations.
      */
-    unsigned int conduct(double length, const State &state,
-                         std::vector<double> &temperature);
+    Step conduct(double length, const State &state,
+                 std::vector<double> &temperature);
 
   private:
     /** T and q of one side of a point, on the normal from side 1 to 2. */
@@ -65,7 +78,20 @@ namespace nsfd
       unsigned int slot = 0;
     };
 
+    /** A slot of a face with a given flux or temperature. */
+    struct Heated {
+      Side side;
+      unsigned int boundary = 0;
+      double weight = 0., bound = 0.;
+      dealii::Point<dim> place;
+      double given = 0.; ///< W/m^2 or K, of the step
+    };
+    bool has_temperature(const Heated &slot) const;
+
     void find_sides();
+    void find_heated();
+    Trace trace_of(const Side &side, const double *x) const;
+    void set_heated(const State &state);
     void exchange(std::vector<std::array<Trace, 2>> &traces, int tag);
     void find_bounds();
     double resistance(std::size_t point, const State &state) const;
@@ -78,6 +104,9 @@ namespace nsfd
     const Communicator &communicator_;
     const HeatCells<dim> cells_;
     std::vector<std::array<Side, 2>> sides_; ///< by point
+    /// point and side, cell by cell and slot by slot: what corners get is
+    /// summed in this order, which ranks do not change
+    std::vector<std::pair<unsigned int, unsigned int>> ends_;
     std::vector<double> bound_;   ///< 1/g of a point, W/(m^2 K); 0: no flux
     std::vector<double> share_1_; ///< of what a point dissipates
     double longest_step_ = 0.;
@@ -87,7 +116,9 @@ namespace nsfd
       double mixed = 0., jump = 0., flux = 0.;
     };
     std::vector<Face> faces_;
+    std::vector<int> face_of_; ///< by point, of `faces_`; -1: none
     std::vector<std::array<Trace, 2>> traces_; ///< by point
+    std::vector<Heated> heated_;
     NeighborMessages<Trace> messages_;
   };
 } // namespace nsfd

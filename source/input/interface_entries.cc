@@ -1,6 +1,7 @@
 #include "interface_entries.h"
 
 #include "read_sections.h"
+#include "temperature_factors.h"
 
 #include <fmt/format.h>
 
@@ -11,10 +12,18 @@ namespace nsfd
   const std::vector<std::string> &cohesive_entries()
   {
     static const std::vector<std::string> entries = {
-        "opening viscosity", "viscous limit",    "strength factor",
-        "toughness factor",  "scatter",          "strength scatter",
-        "toughness scatter", "strength modulus", "toughness modulus",
-        "unloading"};
+        "opening viscosity",
+        "viscous limit",
+        "strength factor",
+        "toughness factor",
+        "scatter",
+        "strength scatter",
+        "toughness scatter",
+        "strength modulus",
+        "toughness modulus",
+        "unloading",
+        "strength at temperatures",
+        "toughness at temperatures"};
     return entries;
   }
 
@@ -104,10 +113,12 @@ namespace nsfd
     input.has_broken = !input.broken.is_zero();
   }
 
-  void read_cohesive_block(SectionReader &reader, InterfaceInput &input)
+  void read_cohesive_block(SectionReader &reader, const SceneInput &scene,
+                           InterfaceInput &input)
   {
     input.law = read_cohesive_law(reader, input.law_name);
     read_point_factors(reader, input);
+    read_law_factors(reader, scene, input);
     if (input.law && input.law->adds_openings())
       reader.refuse(
           {"opening viscosity", "viscous limit"},

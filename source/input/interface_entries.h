@@ -10,12 +10,15 @@
 
 namespace nsfd
 {
+  struct SceneInput;
+
   /** Entries that all cohesive laws have, and only they. */
   const std::vector<std::string> &cohesive_entries();
 
   /** The law that InterfaceInput::law_name names, and what only cohesive laws
       have besides it. */
-  void read_cohesive_block(SectionReader &reader, InterfaceInput &input);
+  void read_cohesive_block(SectionReader &reader, const SceneInput &scene,
+                           InterfaceInput &input);
 
   /** Friction while it is damaged, and what is broken at the start. */
   void read_damage_start(SectionReader &reader, InterfaceInput &input);

@@ -94,6 +94,30 @@ namespace nsfd
             "back");
     }
 
+    /** True if something is given. */
+    bool read_heat(SectionReader &reader, const SceneInput &scene,
+                   BoundaryInput &boundary)
+    {
+      const std::string temperature = "temperature", flux = "heat flux";
+      bool conducts = false;
+      for (const MaterialInput &material : scene.materials)
+        conducts |= material.heat && material.heat->conductivity > 0.;
+      if (!conducts) {
+        reader.refuse({temperature, flux},
+                      scene.has_heat() ? "no material has a conductivity"
+                                       : "no material has a heat capacity");
+        return false;
+      }
+      boundary.temperature = read_optional_expression(
+          reader, temperature, units::temperature, "K, of x, y, z, t");
+      boundary.heat_flux = read_optional_expression(
+          reader, flux, units::heat_flux, "W/m^2 into the body, of x, y, z, t");
+      if (boundary.temperature && boundary.heat_flux)
+        reader.error(flux, "`temperature` and `heat flux` are both given",
+                     "keep one of the two");
+      return boundary.temperature || boundary.heat_flux;
+    }
+
     BoundaryInput read_boundary(SectionReader &reader, const SceneInput &scene)
     {
       BoundaryInput boundary;
@@ -131,6 +155,7 @@ namespace nsfd
         boundary.has_pressure = true;
       }
       read_absorbing(reader, scene, has_driven, boundary);
+      has_effect = read_heat(reader, scene, boundary) || has_effect;
       if (!has_effect && !boundary.has_pressure && !boundary.absorbs)
         reader.error("",
                      fmt::format("section `{}` prescribes nothing",

@@ -1,6 +1,7 @@
 #include "interface_entries.h"
 #include "law_of_shape.h"
 #include "read_sections.h"
+#include "temperature_factors.h"
 
 #include <fmt/format.h>
 
@@ -76,13 +77,16 @@ namespace nsfd
               : input.normal_stiffness;
     }
 
-    void read_contact(SectionReader &reader, InterfaceInput &input)
+    void read_contact(SectionReader &reader, const SceneInput &scene,
+                      InterfaceInput &input)
     {
       input.friction = read_friction(reader);
       input.restitution =
           reader.number("restitution", "0", units::none, Range::closed(0., 1.),
                         "of Newton's impact law, where beta = 0");
       input.sliding = read_sliding(reader, input.friction);
+      input.heat.friction =
+          read_friction_factor(reader, scene, input.friction, input.sliding);
     }
 
     /** Common nodes are for bodies of Hooke's law and small strain. */
@@ -249,7 +253,8 @@ namespace nsfd
         reader.refuse({"friction", "restitution", "friction exponent", "broken",
                        "intact faces", "crack pressure", "pressure threshold",
                        "dilatancy", "dilatancy saturation", "wear coefficient",
-                       "contact conductance", "gap conductivity"},
+                       "contact conductance", "gap conductivity",
+                       "friction at temperatures"},
                       reason);
         reader.refuse(cohesive_entries(), reason);
         refuse_initial_stress(reader, reason);
@@ -257,7 +262,7 @@ namespace nsfd
       }
       input.initial_stress = read_initial_traction(reader, scene);
       if (input.law_name == "contact") {
-        read_contact(reader, input);
+        read_contact(reader, scene, input);
         read_crack_pressure(reader, input);
         read_heat(reader, scene, input);
         const std::string reason =
@@ -271,8 +276,8 @@ namespace nsfd
         reader.refuse(cohesive_entries(),
                       "the springs of `elastic` never break");
       } else
-        read_cohesive_block(reader, input);
-      read_contact(reader, input);
+        read_cohesive_block(reader, scene, input);
+      read_contact(reader, scene, input);
       check_lift(reader, input);
       check_healing(reader, input, scene);
       read_damage_start(reader, input);

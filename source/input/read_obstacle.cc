@@ -1,5 +1,6 @@
 #include "interface_entries.h"
 #include "read_sections.h"
+#include "temperature_factors.h"
 
 #include "nsfd/obstacles/obstacle_shape.h"
 
@@ -118,10 +119,11 @@ namespace nsfd
       if (input.law_name.empty())
         return;
       input.obstacle = int(scene.obstacles.size());
-      read_cohesive_block(reader, input);
+      read_cohesive_block(reader, scene, input);
       input.friction = obstacle.friction;
       input.restitution = obstacle.restitution;
       input.sliding = obstacle.sliding;
+      input.heat.friction = obstacle.friction_factor;
       check_lift(reader, input);
       read_damage_start(reader, input);
       input.intact = read_intact_adhesion(reader, input);
@@ -154,6 +156,8 @@ namespace nsfd
           reader.number("restitution", "0", units::none, Range::closed(0., 1.),
                         "of Newton's impact law");
       obstacle.sliding = read_sliding(reader, obstacle.friction);
+      obstacle.friction_factor = read_friction_factor(
+          reader, scene, obstacle.friction, obstacle.sliding);
       read_adhesion(reader, scene, obstacle);
       return obstacle;
     }

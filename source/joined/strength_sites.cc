@@ -66,6 +66,18 @@ namespace nsfd
   }
 
   template <int dim>
+  void StrengthSites<dim>::set_limits(const std::vector<Limits> &limits)
+  {
+    for (std::size_t site = 0; site < sites_.size(); ++site)
+      if (!is_released(site)) {
+        sites_[site].limit = limits[site].limit;
+        sites_[site].least = limits[site].least;
+      }
+    for (std::size_t block = 0; block < least_.size(); ++block)
+      set_least(block);
+  }
+
+  template <int dim>
   void StrengthSites<dim>::find(const std::vector<double> &bounds,
                                 Near &near) const
   {

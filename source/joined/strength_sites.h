@@ -55,6 +55,11 @@ namespace nsfd
     }
     /** It is not looked at any more. */
     void release(std::size_t site);
+    /** Sites that are not released have others; @p limits of all of them. */
+    struct Limits {
+      double limit = 0., least = 0.; ///< see Site
+    };
+    void set_limits(const std::vector<Limits> &limits);
 
     /** Some sites, ascending, and squares of their tractions, Pa^2. */
     struct Near {

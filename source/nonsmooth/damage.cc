@@ -23,6 +23,7 @@ namespace nsfd
   PointDamage<dim>::PointDamage(const OneStepProblem<dim> &problem,
                                 const std::size_t point)
       : interaction_(problem.interactions[problem.interaction[point]]),
+        friction_(friction_of(problem, point)),
         law_(law_at(interaction_, problem.strength_factor[point],
                     problem.opening_factor[point])),
         history_{problem.opening_max[point],

@@ -58,8 +58,7 @@ namespace nsfd
     double effective_traction(const double normal, const double *shear) const
     {
       return law_.effective_traction<dim>(
-          normal, shear,
-          interaction_.friction_exponent == 0. ? interaction_.friction : 0.);
+          normal, shear, interaction_.friction_exponent == 0. ? friction_ : 0.);
     }
 
     double beta(const Reach &history) const { return law_.beta(history); }
@@ -95,6 +94,7 @@ namespace nsfd
 
   private:
     const Interaction &interaction_;
+    double friction_;
     LawPoint law_;
     Reach history_;
     const double *old_;

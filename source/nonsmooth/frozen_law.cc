@@ -123,7 +123,7 @@ namespace nsfd
       beta = damage.beta(damage.history_after(end));
       break;
     }
-    frozen.threshold = threshold_for(interaction, beta, contact_impulse);
+    frozen.threshold = threshold_for(problem, i, beta, contact_impulse);
     return frozen;
   }
 

@@ -35,14 +35,15 @@ namespace nsfd::local
   }
 
   /** Friction bound for beta at the end of the step. */
-  inline double threshold_for(const Interaction &interaction, const double beta,
-                              const double contact_impulse)
+  template <int dim>
+  double threshold_for(const OneStepProblem<dim> &problem, const std::size_t i,
+                       const double beta, const double contact_impulse)
   {
-    return contact_impulse <= 0.
-               ? 0.
-               : interaction.friction *
-                     kappa(beta, interaction.friction_exponent) *
-                     contact_impulse;
+    if (contact_impulse <= 0.)
+      return 0.;
+    const auto &interaction = problem.interactions[problem.interaction[i]];
+    return friction_of(problem, i) *
+           kappa(beta, interaction.friction_exponent) * contact_impulse;
   }
 
   template <int dim>
@@ -154,7 +155,7 @@ namespace nsfd::local
                         solution);
       if (solution.contact_impulse > 0. && interaction().friction > 0.)
         frozen.threshold =
-            threshold_for(interaction(), beta(), solution.contact_impulse);
+            threshold_for(problem, i, beta(), solution.contact_impulse);
       solve_tangential<dim>(problem, i, frozen, local, majorant_tangential,
                             solution);
       solution.frozen = frozen;
@@ -209,7 +210,7 @@ namespace nsfd::local
       const auto excess = [&](const double speed) {
         frozen.lift = lift_at(frozen.secant, speed);
         frozen.threshold = threshold_for(
-            interaction(), beta, contact_impulse(frozen.secant, frozen.lift));
+            problem, i, beta, contact_impulse(frozen.secant, frozen.lift));
         solve(frozen);
         return sliding_speed<dim>(problem, i, solution.velocity) - speed;
       };

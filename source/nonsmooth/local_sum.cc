@@ -58,9 +58,8 @@ namespace nsfd::local
         const double pressing = solution.impulse[0] + wh_ * m;
         if (problem_.contact[i_] && local_.interaction().friction > 0. &&
             pressing > 0.)
-          solution.frozen.threshold =
-              threshold_for(local_.interaction(),
-                            damage_.beta(damage_.history_after(end)), pressing);
+          solution.frozen.threshold = threshold_for(
+              problem_, i_, damage_.beta(damage_.history_after(end)), pressing);
         solve_tangential_part(m * damage_.slip_weight());
         solution.reach = end_reach<dim>(problem_, i_, solution.velocity);
         return solution.reach.opening;

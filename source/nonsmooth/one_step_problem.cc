@@ -18,8 +18,9 @@ namespace nsfd
                         &problem.compression_stiffness, &problem.target,
                         &problem.majorant_normal, &problem.majorant_tangential})
       array->assign(n, 0.);
-    for (auto *array : {&problem.slip_max, &problem.viscosity,
-                        &problem.dilatancy, &problem.lift_left})
+    for (auto *array :
+         {&problem.slip_max, &problem.viscosity, &problem.dilatancy,
+          &problem.lift_left, &problem.friction_factor})
       array->clear();
     for (auto *array : {&problem.strength_factor, &problem.opening_factor})
       array->assign(n, 1.);

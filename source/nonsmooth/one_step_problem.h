@@ -72,6 +72,7 @@ namespace nsfd
     std::vector<double> weight;            ///< w
     std::vector<double> strength_factor;   ///< a, see CohesiveLaw; else 1
     std::vector<double> opening_factor;    ///< a / g, see CohesiveLaw; else 1
+    std::vector<double> friction_factor;   ///< of mu; empty: 1
     std::vector<double> opening_max;       ///< d_m, largest effective opening,
                                            ///< or the largest <u_N>_+
     std::vector<double> slip_max; ///< largest |u_T| of laws with two damage
@@ -101,6 +102,15 @@ namespace nsfd
   /** @p n points with what points have by default. */
   template <int dim>
   void resize(OneStepProblem<dim> &problem, std::size_t n);
+
+  /** mu of a point, whatever its damage. */
+  template <int dim>
+  double friction_of(const OneStepProblem<dim> &problem, const std::size_t i)
+  {
+    const double mu = problem.interactions[problem.interaction[i]].friction;
+    return problem.friction_factor.empty() ? mu
+                                           : problem.friction_factor[i] * mu;
+  }
 
   /** How many of them, the first ones, this rank counts. */
   template <int dim>

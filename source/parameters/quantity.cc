@@ -93,6 +93,7 @@ namespace nsfd
         {units::heat_capacity, "an energy per mass and kelvin", "500 J/kg/K"},
         {units::conductivity, "a thermal conductivity", "50 W/m/K"},
         {units::conductance, "a power per area and kelvin", "10 kW/m^2/K"},
+        {units::heat_flux, "a power per area", "10 kW/m^2"},
         {{1, 1, -2}, "a force", ""},
         {{1, 2, -2}, "an energy", ""},
         {{0, 0, -1}, "a frequency", "1 1/s"},

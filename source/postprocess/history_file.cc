@@ -20,6 +20,8 @@ namespace nsfd
         result.push_back("absorbed");
       if (columns.heat)
         result.insert(result.end(), {"heat", "heat_stored", "hottest"});
+      if (columns.heated_sides)
+        result.push_back("heat_given");
       return result;
     }
   } // namespace
@@ -31,13 +33,14 @@ namespace nsfd
 
   HistoryFile::HistoryFile(const std::string &path, const Columns &columns)
       : absorbed_(columns.absorbed), heat_(columns.heat),
-        file_(path, names(columns))
+        heated_sides_(columns.heated_sides), file_(path, names(columns))
   {
   }
 
   HistoryFile::HistoryFile(const std::string &path, const Columns &columns,
                            const std::uintmax_t n_bytes)
       : absorbed_(columns.absorbed), heat_(columns.heat),
+        heated_sides_(columns.heated_sides),
         file_(path, names(columns), n_bytes)
   {
   }
@@ -71,6 +74,8 @@ namespace nsfd
     if (heat_) {
       const HeatRecord heat = row.heat.value_or(HeatRecord());
       line.insert(line.end(), {heat.made, heat.stored, heat.hottest});
+      if (heated_sides_)
+        line.push_back(heat.given);
     }
     file_.write(line);
   }
@@ -106,7 +111,8 @@ namespace nsfd
       if (columns.absorbed)
         e.absorbed = *next++;
       if (columns.heat)
-        row.heat = HeatRecord{next[0], next[1], next[2]};
+        row.heat = HeatRecord{next[0], next[1], next[2],
+                              columns.heated_sides ? next[3] : 0.};
     }
     return rows;
   }

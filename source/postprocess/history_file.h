@@ -20,6 +20,7 @@ namespace nsfd
       bool absorbed = false;     ///< there are absorbing sides: the last column
       bool axisymmetric = false; ///< measures are per radian
       bool heat = false;         ///< the last columns of all
+      bool heated_sides = false; ///< one more behind them
 
       std::size_t n_reactions() const { return driven.size() * dimension; }
     };
@@ -50,7 +51,7 @@ namespace nsfd
     static std::string header(const Columns &columns);
 
   private:
-    const bool absorbed_, heat_;
+    const bool absorbed_, heat_, heated_sides_;
     TableFile file_;
   };
 } // namespace nsfd

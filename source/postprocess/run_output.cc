@@ -46,8 +46,12 @@ namespace nsfd
   template <int dim>
   HistoryFile::Columns RunOutput<dim>::columns() const
   {
-    return {driven_, dim, input_.has_absorbing_sides(), input_.axisymmetric,
-            input_.has_heat()};
+    return {driven_,
+            dim,
+            input_.has_absorbing_sides(),
+            input_.axisymmetric,
+            input_.has_heat(),
+            has_heated_sides(input_)};
   }
 
   template <int dim>

@@ -185,6 +185,7 @@ namespace nsfd
       json["crack_pressure_work"] = number(*summary.pressure_work);
     if (summary.heat)
       json["heat"] = {{"made", number(summary.heat->made)},
+                      {"given", number(summary.heat->given)},
                       {"stored", number(summary.heat->stored)},
                       {"hottest", number(summary.heat->hottest)}};
     if (summary.viscous_traction_max)

@@ -50,6 +50,8 @@ namespace nsfd
         units["heat"] = units["heat_stored"] = energy;
         units["hottest"] = "K";
       }
+      if (columns.heated_sides)
+        units["heat_given"] = energy;
       return units;
     }
 

@@ -42,4 +42,31 @@ namespace nsfd
         input.interfaces.begin(), input.interfaces.end(),
         [](const InterfaceInput &block) { return bool(block.crack_pressure); });
   }
+
+  bool has_warm_friction(const SceneInput &input)
+  {
+    return std::any_of(input.interfaces.begin(), input.interfaces.end(),
+                       [](const InterfaceInput &block) {
+                         return block.heat.friction.is_given();
+                       }) ||
+           std::any_of(input.obstacles.begin(), input.obstacles.end(),
+                       [](const ObstacleInput &obstacle) {
+                         return obstacle.friction_factor.is_given();
+                       });
+  }
+
+  bool has_heated_sides(const SceneInput &input)
+  {
+    return std::any_of(input.boundaries.begin(), input.boundaries.end(),
+                       [](const BoundaryInput &boundary) {
+                         return boundary.temperature || boundary.heat_flux;
+                       });
+  }
+
+  bool has_warm_laws(const SceneInput &input)
+  {
+    return std::any_of(
+        input.interfaces.begin(), input.interfaces.end(),
+        [](const InterfaceInput &block) { return block.heat.changes_law(); });
+  }
 } // namespace nsfd

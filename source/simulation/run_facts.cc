@@ -200,10 +200,11 @@ namespace nsfd
     if (crossed != summary.counters.end())
       facts.cells_crossed_by_heat = crossed->second;
     if (summary.heat)
-      facts.heat_residual =
-          state.heat.moved > 0.
-              ? std::abs(state.heat.stored - state.heat.made) / state.heat.moved
-              : 0.;
+      facts.heat_residual = state.heat.moved > 0.
+                                ? std::abs(state.heat.stored - state.heat.made -
+                                           state.heat.given) /
+                                      state.heat.moved
+                                : 0.;
     const EnergyLines &e = summary.energy;
     if (!std::isfinite(e.kinetic + e.elastic + e.cohesive + e.numerical))
       facts.balance_residual = std::numeric_limits<double>::quiet_NaN();

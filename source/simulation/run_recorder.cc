@@ -36,7 +36,8 @@ namespace nsfd
     {
       if (!input.has_heat())
         return std::nullopt;
-      return HeatRecord{state.heat.made, state.heat.stored, hottest};
+      return HeatRecord{state.heat.made, state.heat.stored, hottest,
+                        state.heat.given};
     }
   } // namespace
 

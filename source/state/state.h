@@ -27,10 +27,14 @@ namespace nsfd
   struct HeatState {
     std::vector<double> temperature; ///< K, by corner of the cells
     double made = 0.;   ///< by friction, damage and flow since t = 0, J
+    double given = 0.;  ///< by sides since t = 0, J
     double stored = 0.; ///< in the bodies since t = 0, J
     double moved = 0.;  ///< sum of its parts, whatever their sign: the most, J
     double hottest = 0., hottest_of_run = 0.; ///< K
     double conducted_until = 0.;              ///< s
+    /// by point, K: of the face, and that at which its law began to soften,
+    /// until then the same; empty if no law and no friction depends on it
+    std::vector<double> at_faces, of_laws;
     /// of the last step, J: by point, and by cell the plastic work; a
     /// checkpoint has none
     std::vector<double> of_points, of_cells;

@@ -48,7 +48,8 @@ namespace nsfd
       for (unsigned int c = 1; c < dim; ++c)
         shear = std::hypot(shear, traction[c]);
       if (interaction.friction_exponent == 0. && traction[0] < 0. && shear > 0.)
-        share = std::max(0., 1. + interaction.friction * traction[0] / shear);
+        share =
+            std::max(0., 1. + friction_of(problem, i) * traction[0] / shear);
       next.kind[i] = PointKind::cohesive;
       next.opening_max[i] = opening;
       for (unsigned int c = 0; c < dim; ++c) {

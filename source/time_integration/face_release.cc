@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace nsfd
 {
@@ -100,14 +101,15 @@ namespace nsfd
       }
     }
     sites_.finish(cells.bodies.size());
+    if (has_warm_faces(input))
+      for (std::size_t k = 0; k < sites_.size(); ++k)
+        cold_.push_back({factors_[k], {sites_[k].limit, sites_[k].least}});
   }
 
   template <int dim>
   LawPoint FaceRelease<dim>::law(const std::size_t site) const
   {
-    const auto &block =
-        discretization_.input().interfaces
-            [discretization_.origins()[sites_[site].first_point].block];
+    const auto &block = block_of(site);
     return LawPoint(*block.law, factors_[site].strength, factors_[site].opening,
                     block.plateau);
   }
@@ -116,10 +118,19 @@ namespace nsfd
   template <int dim>
   double FaceRelease<dim>::friction_of(const std::size_t site) const
   {
-    const auto &block =
-        discretization_.input().interfaces
-            [discretization_.origins()[sites_[site].first_point].block];
-    return block.friction_exponent == 0. ? block.friction : 0.;
+    const auto &block = block_of(site);
+    if (block.friction_exponent != 0.)
+      return 0.;
+    return temperature_.empty()
+               ? block.friction
+               : block.friction * block.heat.friction.at(temperature(site));
+  }
+
+  template <int dim>
+  const InterfaceInput &FaceRelease<dim>::block_of(const std::size_t site) const
+  {
+    return discretization_.input()
+        .interfaces[discretization_.origins()[sites_[site].first_point].block];
   }
 
   template <int dim>
@@ -128,12 +139,62 @@ namespace nsfd
   {
     const auto &points = discretization_.points();
     const int first = first_site_[points.face_of[point]];
-    if (first < 0)
-      return {all_.strength_factor[point], all_.opening_factor[point]};
+    if (first < 0) {
+      typename LeapfrogPoints<dim>::Factors of_point = {
+          all_.strength_factor[point], all_.opening_factor[point]};
+      const PointOrigin &origin = discretization_.origins()[point];
+      if (!temperature_.empty() &&
+          origin.kind == PointOrigin::Kind::interface) {
+        const PointFactors warm =
+            warm_factors(discretization_.input().interfaces[origin.block],
+                         temperature_[point]);
+        of_point.strength *= warm.strength;
+        of_point.opening *= warm.strength / warm.toughness;
+      }
+      return of_point;
+    }
     const unsigned int within =
         point - points.faces[points.face_of[point]].first;
     return factors_[std::size_t(first) +
                     within / sites_[std::size_t(first)].n_points];
+  }
+
+  /** The mean of its points, K. */
+  template <int dim>
+  double FaceRelease<dim>::temperature(const std::size_t site) const
+  {
+    const auto first = temperature_.begin() + long(sites_[site].first_point);
+    const unsigned int n = sites_[site].n_points;
+    return std::accumulate(first, first + long(n), 0.) / n;
+  }
+
+  template <int dim>
+  void FaceRelease<dim>::warm(const std::vector<double> &temperatures)
+  {
+    temperature_ = temperatures;
+    std::vector<typename StrengthSites<dim>::Limits> limits(cold_.size());
+    const auto &points = discretization_.points();
+    for (std::size_t k = 0; k < cold_.size(); ++k) {
+      const PointFactors warm = warm_factors(block_of(k), temperature(k));
+      factors_[k].strength = cold_[k].factors.strength * warm.strength;
+      factors_[k].opening =
+          cold_[k].factors.opening * (warm.strength / warm.toughness);
+      limits[k].limit = cold_[k].limits.limit * warm.strength * warm.strength;
+    }
+    // `least` is of all sites of a face
+    for (std::size_t k = 0; k < cold_.size();) {
+      const unsigned int face = points.face_of[sites_[k].first_point];
+      double ratio = infinity;
+      std::size_t end = k;
+      for (; end < cold_.size() &&
+             points.face_of[sites_[end].first_point] == face;
+           ++end)
+        ratio = std::min(ratio,
+                         factors_[end].strength / cold_[end].factors.strength);
+      for (; k < end; ++k)
+        limits[k].least = cold_[k].limits.least * ratio * ratio;
+    }
+    sites_.set_limits(limits);
   }
 
   template <int dim>

@@ -12,7 +12,7 @@
 namespace nsfd
 {
   class Archive;
-  struct SceneInput;
+  struct InterfaceInput;
 
   /**
    * Which faces of joined cells are released: where the mean traction of both
@@ -36,6 +36,10 @@ namespace nsfd
 
     /** Of the face of a point that may be released, else of the point. */
     typename LeapfrogPoints<dim>::Factors factors(unsigned int point) const;
+
+    /** Strength, toughness and friction at @p temperatures (K) of the points.
+     */
+    void warm(const std::vector<double> &temperatures);
 
     /**
      * Points whose faces have reached their strength; intact() is without them
@@ -74,7 +78,9 @@ namespace nsfd
     {
       return share_.empty() ? 1. : share_[site];
     }
+    const InterfaceInput &block_of(std::size_t site) const;
     double friction_of(std::size_t site) const;
+    double temperature(std::size_t site) const;
     bool has_more(const CellForces<dim> &forces, std::size_t site) const;
     void add_more(const CellForces<dim> &forces);
     void let_go(std::size_t site, std::vector<unsigned int> &released);
@@ -86,7 +92,15 @@ namespace nsfd
     /// cell; empty: 1
     std::vector<double> share_;
     std::vector<typename LeapfrogPoints<dim>::Factors> factors_; ///< of sites
-    std::vector<int> first_site_; ///< by face, -1: it is never released
+    /// of sites, as they are without a temperature; empty if no law and no
+    /// friction depends on it
+    struct Cold {
+      typename LeapfrogPoints<dim>::Factors factors;
+      typename StrengthSites<dim>::Limits limits;
+    };
+    std::vector<Cold> cold_;
+    std::vector<double> temperature_; ///< by point, K; empty likewise
+    std::vector<int> first_site_;     ///< by face, -1: it is never released
     /// of this step and the last
     typename StrengthSites<dim>::Near near_, last_near_;
     bool has_looked_ = false;          ///< there was a step

@@ -281,6 +281,13 @@ namespace nsfd
     };
     {
       const Charge charge(Cost::laws);
+      if (has_warm_faces(input_)) {
+        const auto temperatures = ghosts_.with_points(old.heat.at_faces);
+        faces_.warm(temperatures);
+        points_.warm(temperatures, [this](const unsigned int point) {
+          return faces_.factors(point);
+        });
+      }
       report.released = let_go();
     }
     Energies energies;

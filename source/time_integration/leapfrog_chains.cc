@@ -43,6 +43,8 @@ namespace nsfd
       p.slip_max.push_back(0.);
     if (!mesh_.viscosity.empty())
       p.viscosity.push_back(0.);
+    if (!mesh_.friction_factor.empty())
+      p.friction_factor.push_back(1.);
     for (auto *array :
          {&p.free_velocity, &p.given_velocity, &p.jump_old, &p.jump_free,
           &p.sliding_offset, &velocity, &old_velocity, &impulse})
@@ -142,11 +144,11 @@ namespace nsfd
       (move_one(lists), ...);
     };
     move(1u, point, p.kind, p.mask, p.contact, p.interaction, p.weight,
-         p.strength_factor, p.opening_factor, p.opening_max, p.slip_max,
-         p.compression_stiffness, p.viscosity, p.target, p.majorant_normal,
-         p.majorant_tangential, other.kind, other.opening_max, other.slip_max,
-         other.compression, other.beta, beta, slip, released, closed, turned,
-         solution);
+         p.strength_factor, p.opening_factor, p.friction_factor, p.opening_max,
+         p.slip_max, p.compression_stiffness, p.viscosity, p.target,
+         p.majorant_normal, p.majorant_tangential, other.kind,
+         other.opening_max, other.slip_max, other.compression, other.beta, beta,
+         slip, released, closed, turned, solution);
     move(unsigned(dim), p.free_velocity, p.given_velocity, p.jump_old,
          p.jump_free, p.sliding_offset, velocity, old_velocity, impulse);
     move(unsigned(dim * dim), frame);

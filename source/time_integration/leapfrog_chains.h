@@ -58,8 +58,9 @@ namespace nsfd
     void show(State &state, const std::vector<unsigned int> &place) const;
     /** What may be other than the mesh of a point says. */
     struct Others {
-      bool frames = false;  ///< in large motions
-      bool factors = false; ///< of halves of faces that were released as one
+      bool frames = false; ///< in large motions
+      /// of halves of faces that were released as one, or when they were warm
+      bool factors = false;
     };
     /** The chain that is not shown, of points that have been added; @p n of the
         mesh. */

@@ -27,6 +27,8 @@ namespace nsfd
       to.from_closed = from.from_closed;
       to.slip_max.assign(from.slip_max.empty() ? 0 : to.n_points, 0.);
       to.viscosity.assign(from.viscosity.empty() ? 0 : to.n_points, 0.);
+      to.friction_factor.assign(from.friction_factor.empty() ? 0 : to.n_points,
+                                1.);
       const auto copy = [&](const std::size_t width, const auto &one,
                             auto &two) {
         for (std::size_t k = first; k < places.size() && !one.empty(); ++k)
@@ -44,6 +46,7 @@ namespace nsfd
             &OneStepProblem<dim>::viscosity,
             &OneStepProblem<dim>::strength_factor,
             &OneStepProblem<dim>::opening_factor,
+            &OneStepProblem<dim>::friction_factor,
             &OneStepProblem<dim>::majorant_normal,
             &OneStepProblem<dim>::majorant_tangential})
         copy(1, from.*member, to.*member);

@@ -38,6 +38,17 @@ namespace nsfd
   }
 
   template <int dim>
+  std::vector<double>
+  LeapfrogGhosts<dim>::with_points(const std::vector<double> &own) const
+  {
+    if (!layer_)
+      return own;
+    auto all = layer_->spread_points(own, 1);
+    layer_->fetch_points(1, all);
+    return all;
+  }
+
+  template <int dim>
   State LeapfrogGhosts<dim>::without(State all) const
   {
     if (layer_)

@@ -56,6 +56,8 @@ namespace nsfd
     /** A state of the cells of this rank, with ghosts. Collective. */
     State with(State own) const;
     State without(State all) const;
+    /** A value of each point. Collective. */
+    std::vector<double> with_points(const std::vector<double> &own) const;
     /** What is of no cell and known to all ranks: of the first one alone. */
     void count_once(State &own) const;
 

@@ -6,6 +6,7 @@
 #include "point_velocities.h"
 
 #include "discretization/discretization.h"
+#include "discretization/point_factors.h"
 #include "joined/held_nodes.h"
 #include "nsfd/scene/scene_input.h"
 
@@ -61,6 +62,21 @@ namespace nsfd
       held.mark(chains.solution);
       outcome.excess = std::max(outcome.excess, held.excess(chains.impulse));
     }
+
+    /** Chains of the points of every face that are not broken. */
+    template <int dim>
+    std::vector<unsigned int> holds_of_faces(const InterfacePoints<dim> &points,
+                                             const LeapfrogChains<dim> &chains)
+    {
+      std::vector<unsigned int> holds;
+      for (const auto &face : points.faces)
+        holds.push_back(2 * face.count);
+      for (std::size_t a = 0; a < chains.size(); ++a)
+        for (const double beta : {chains.beta[a], chains.other.beta[a]})
+          if (beta < 1e-3)
+            --holds[points.face_of[chains.point[a]]];
+      return holds;
+    }
   } // namespace
 
   template <int dim>
@@ -68,23 +84,9 @@ namespace nsfd
                                       const JoinedMesh<dim> &mesh,
                                       const OneStepProblem<dim> &all)
       : discretization_(discretization), mesh_(mesh), all_(all), chains_(all),
+        hold_of_face_(holds_of_faces(discretization.points(), chains_)),
         heals_(has_healing(all)), nodes_(mesh)
   {
-    count_holds();
-  }
-
-  /** Chains of the points of every face that are not broken. */
-  template <int dim>
-  void LeapfrogPoints<dim>::count_holds()
-  {
-    const auto &points = discretization_.points();
-    hold_of_face_.clear();
-    for (const auto &face : points.faces)
-      hold_of_face_.push_back(2 * face.count);
-    for (std::size_t a = 0; a < chains_.size(); ++a)
-      for (const double beta : {chains_.beta[a], chains_.other.beta[a]})
-        if (beta < 1e-3)
-          --hold_of_face_[points.face_of[chains_.point[a]]];
   }
 
   template <int dim>
@@ -107,6 +109,36 @@ namespace nsfd
     nodes_.sort(1.25, chains_);
     chains_.release(point, frame, factors);
     nodes_.put(chains_.point);
+  }
+
+  template <int dim>
+  void LeapfrogPoints<dim>::warm(
+      const std::vector<double> &temperatures,
+      const std::function<Factors(unsigned int point)> &factors)
+  {
+    OneStepProblem<dim> &p = chains_.problem;
+    const auto &input = discretization_.input();
+    for (std::size_t a = 0; a < chains_.size(); ++a) {
+      const unsigned int point = chains_.point[a];
+      const PointOrigin &origin = discretization_.origins()[point];
+      if (!p.friction_factor.empty())
+        p.friction_factor[a] =
+            friction_factor(input, origin, temperatures[point]);
+      const bool is_closed = p.kind[a] == PointKind::rigid &&
+                             chains_.other.kind[a] == PointKind::rigid &&
+                             p.opening_max[a] == 0. &&
+                             chains_.other.opening_max[a] == 0.;
+      if (!is_closed || !input.interfaces[origin.block].heat.changes_law())
+        continue;
+      const Factors now = factors(point);
+      if (now.strength == p.strength_factor[a] &&
+          now.opening == p.opening_factor[a])
+        continue;
+      p.strength_factor[a] = now.strength;
+      p.opening_factor[a] = now.opening;
+      for (auto &elastic : nodes_.of(mesh_.node_of_point(point)).elastic)
+        elastic.is_new = true;
+    }
   }
 
   /** Of the step that comes: contact. */
@@ -418,9 +450,10 @@ namespace nsfd
   void LeapfrogPoints<dim>::serialize(Archive &archive)
   {
     const auto &input = discretization_.input();
-    chains_.serialize(archive, discretization_.points().n_points,
-                      {input.large_motion, input.mesh_changes()});
-    count_holds();
+    chains_.serialize(
+        archive, discretization_.points().n_points,
+        {input.large_motion, input.mesh_changes() || has_warm_laws(input)});
+    hold_of_face_ = holds_of_faces(discretization_.points(), chains_);
   }
 
   template class LeapfrogPoints<2>;

@@ -43,6 +43,10 @@ namespace nsfd
     /** See LeapfrogChains. */
     void add(unsigned int point, const Factors &factors, const State &state);
     void release(unsigned int point, const Factors &factors);
+    /** Friction at @p temperatures (K) of the points of the mesh; laws that
+        have not opened have @p factors of points now. */
+    void warm(const std::vector<double> &temperatures,
+              const std::function<Factors(unsigned int point)> &factors);
     /** After all that are add()ed: see ActiveNodes. */
     void sort() { nodes_.sort(1., chains_); }
 
@@ -147,7 +151,6 @@ namespace nsfd
   private:
     using Node = ActiveNode<dim>;
 
-    void count_holds();
     void set_point(unsigned int a);
     bool solve_loose(Node &node);
     bool solve_elastic(Node &node);

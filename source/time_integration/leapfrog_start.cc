@@ -87,6 +87,8 @@ namespace nsfd
   State Leapfrog<dim>::start_from(State given)
   {
     State state = ghosts_.with(std::move(given));
+    if (has_warm_faces(input_))
+      faces_.warm(ghosts_.with_points(state.heat.of_laws));
     if (input_.statics) {
       EquilibriumSprings<dim> springs(all_, mesh_);
       JoinedEquilibrium<dim>(input_, communicator_, discretization_, mesh_,
@@ -115,6 +117,8 @@ namespace nsfd
   void Leapfrog<dim>::resume_from(const State &given)
   {
     const State state = ghosts_.with(given);
+    if (has_warm_faces(input_))
+      faces_.warm(ghosts_.with_points(state.heat.of_laws));
     const auto &origins = discretization_.origins();
     std::vector<std::uint8_t> intact(origins.size());
     for (std::size_t i = 0; i < origins.size(); ++i)

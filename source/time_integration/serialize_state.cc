@@ -54,8 +54,10 @@ namespace nsfd
     archive.common("obstacle_shift", s.obstacle_shift);
     archive.histories("material_history", s.material_history);
     archive.cells("temperature", s.heat.temperature);
-    archive.numbers("heat", s.heat.made, s.heat.stored, s.heat.moved,
-                    s.heat.hottest, s.heat.hottest_of_run,
+    archive.points("temperature_at_faces", s.heat.at_faces);
+    archive.points("temperature_of_laws", s.heat.of_laws);
+    archive.numbers("heat", s.heat.made, s.heat.given, s.heat.stored,
+                    s.heat.moved, s.heat.hottest, s.heat.hottest_of_run,
                     s.heat.conducted_until);
     archive.common("surface_impulse", s.surface_impulse);
     archive.common("surface_slip", s.surface_slip);

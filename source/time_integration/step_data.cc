@@ -158,6 +158,38 @@ namespace nsfd
       }
     }
 
+    /**
+     * Strength, toughness and friction at the temperatures before the step:
+     * what friction dissipates in it is the heat of the step, to the last bit.
+     */
+    template <int dim>
+    void set_warm_laws(const SceneInput &input,
+                       const Discretization<dim> &discretization,
+                       const std::vector<PointOrigin> &origins,
+                       const HeatState &heat, OneStepProblem<dim> &problem)
+    {
+      if (heat.at_faces.empty())
+        return;
+      const auto &points = discretization.points();
+      for (std::size_t i = 0; i < origins.size(); ++i) {
+        const PointOrigin &origin = origins[i];
+        if (!problem.friction_factor.empty())
+          problem.friction_factor[i] =
+              friction_factor(input, origin, heat.at_faces[i]);
+        if (origin.kind != PointOrigin::Kind::interface)
+          continue;
+        const auto &block = input.interfaces[origin.block];
+        if (!block.heat.changes_law())
+          continue;
+        const PointFactors cold = point_factors<dim>(
+            block, &points.position[i * dim], discretization.extent());
+        const PointFactors warm = warm_factors(block, heat.of_laws[i]);
+        problem.strength_factor[i] = cold.strength * warm.strength;
+        problem.opening_factor[i] =
+            problem.strength_factor[i] / (cold.toughness * warm.toughness);
+      }
+    }
+
     const SlidingInput *sliding_of(const SceneInput &input,
                                    const PointOrigin &origin)
     {
@@ -282,8 +314,10 @@ namespace nsfd
     problem.interaction.swap(constants.interaction);
     for (const auto member :
          {&OneStepProblem<dim>::weight, &OneStepProblem<dim>::strength_factor,
-          &OneStepProblem<dim>::opening_factor, &OneStepProblem<dim>::viscosity,
-          &OneStepProblem<dim>::dilatancy, &OneStepProblem<dim>::lift_left})
+          &OneStepProblem<dim>::opening_factor,
+          &OneStepProblem<dim>::friction_factor,
+          &OneStepProblem<dim>::viscosity, &OneStepProblem<dim>::dilatancy,
+          &OneStepProblem<dim>::lift_left})
       (problem.*member).swap(constants.*member);
     return problem;
   }
@@ -315,6 +349,8 @@ namespace nsfd
       problem.interactions.push_back(contact_of(contact));
     std::map<std::pair<unsigned int, double>, unsigned int> stiffer_ones;
 
+    if (has_warm_friction(input))
+      problem.friction_factor.assign(points.n_points, 1.);
     if (has_opening_viscosity(input))
       problem.viscosity.assign(points.n_points, 0.);
     if (has_sliding_lift(input)) {
@@ -373,6 +409,7 @@ namespace nsfd
     for (std::size_t k = 0; k < old.jump.size(); ++k)
       problem.jump_free[k] =
           old.jump[k] + h * (1. - input.time.theta) * old.relative_velocity[k];
+    set_warm_laws(input, discretization, origins, old.heat, problem);
     problem.acting.clear();
     const auto parting = delassus.parting();
     for (std::size_t i = 0; i < problem.n_points; ++i) {

@@ -191,6 +191,73 @@ end
       }
     }
 
+    // A slab of 300 K whose left side is at 400 K from t = 0 on: its mean rise
+    // is 1 - sum 8 / (m pi)^2 exp(-(m pi / 2)^2 kappa t / L^2) of it, m odd.
+    // Steps of a 400th of t take backward Euler errors of 1e-3 of the sum, 20
+    // cells less.
+    TEST(Heat, OfAHotSideIsThatOfTheSeries)
+    {
+      const Workspace workspace;
+      const auto file = workspace.path() / "slab.prm";
+      write_text(file, R"(
+set dimension = 2
+subsection Mesh
+  set type         = rectangle
+  set upper corner = 10 mm, 1 mm
+  set cells        = 10, 1
+end
+subsection Material: steel
+  set Young modulus       = 200 GPa
+  set Poisson ratio       = 0.3
+  set density             = 7800 kg/m^3
+  set heat capacity       = 0.004 J/kg/K
+  set conductivity        = 50 W/m/K
+  set initial temperature = 300 K
+end
+subsection Interface: all
+  set law = joined
+end
+subsection Boundary: left
+  set temperature = 400 K
+  set velocity x  = 0
+end
+subsection Boundary: right
+  set velocity x = 1 m/s
+end
+subsection Time
+  set end = 18.72 us
+end
+)");
+      const double capacity = 7800. * 0.004 * 10e-3 * 1e-3,
+                   fourier = 50. / (7800. * 0.004) * 18.72e-6 / 1e-4;
+      double mean = 1.;
+      for (unsigned int m = 1; m < 40; m += 2)
+        mean -= 8. / std::pow(m * M_PI, 2) *
+                std::exp(-std::pow(m * M_PI / 2., 2) * fourier);
+      for (const std::vector<std::string> &set :
+           {std::vector<std::string>{"Time/scheme=explicit"},
+            {"Time/scheme=moreau-jean", "Time/step=0.1248 us"}}) {
+        const std::string name = set.front().substr(12, 4);
+        const Result result = good_run(workspace, name, {file, set});
+        EXPECT_NEAR(heat(result, "given") / (100. * capacity * mean), 1., 5e-3)
+            << name;
+        EXPECT_NEAR(heat(result, "stored") / heat(result, "given"), 1., 1e-9)
+            << name;
+        EXPECT_EQ(result.history["heat_given"].back(), heat(result, "given"));
+      }
+      // a few steps on several ranks
+      std::string on_one;
+      for (const unsigned int ranks : {1u, 2u, 3u}) {
+        const Result result = good_run(
+            workspace, std::to_string(ranks),
+            {file, {"Time/scheme=explicit", "Time/end=1.3 us"}, ranks});
+        EXPECT_GT(result.counter("heat_iterations"), 10.);
+        if (ranks == 1)
+          on_one = result.history_text;
+        EXPECT_EQ(result.history_text, on_one) << ranks;
+      }
+    }
+
     // Jaeger's band: see the scene.
     TEST(Heat, FlashTemperatureOfJaeger)
     {
@@ -241,6 +308,12 @@ end
                       "an energy per mass and kelvin"));
       EXPECT_TRUE(has(message({"Material: lining/plastic heat share=1"}),
                       "the material does not flow"));
+      EXPECT_TRUE(has(message({"Boundary: left/temperature=300 K",
+                               "Boundary: left/heat flux=1 W/m^2"}),
+                      "`temperature` and `heat flux` are both given"));
+      EXPECT_TRUE(has(message({"Boundary: left/heat flux=1 W/m^2",
+                               "Material: lining/conductivity=0"}),
+                      "no material has a conductivity"));
     }
   } // namespace
 } // namespace end_to_end::test_heat

@@ -62,7 +62,7 @@ end
     }
 
     template <int dim>
-    State start(Scene<dim> &scene, const BodyHeat<dim> &heat)
+    State start(Scene<dim> &scene, BodyHeat<dim> &heat)
     {
       State state = scene.state;
       heat.start(state);
@@ -237,6 +237,115 @@ end
       keeps_heat<2>("diagonal triangles", "6, 3");
       keeps_heat<3>("brick", "4, 2, 2");
       keeps_heat<3>("tetrahedra", "4, 2, 2");
+    }
+
+    std::string side(const std::string &name, const std::string &entries)
+    {
+      return "subsection Boundary: " + name + "\n" + entries + "end\n";
+    }
+
+    // In steps that last long enough T = T_g + q_g x / k, whatever the cells.
+    TEST(Heat, SidesGiveALineInTheEnd)
+    {
+      for (const std::string type : {"rectangle", "diagonal triangles"}) {
+        Scene<2> scene(bar(type, "8, 2", "5", "300",
+                           joined + side("left", "  set temperature = 320\n") +
+                               side("right", "  set heat flux = 40\n")));
+        BodyHeat<2> heat(*scene.discretization, scene.communicator);
+        State state = start(scene, heat);
+        HeatConduction<2> conduction(*scene.discretization, scene.communicator);
+        conduction.conduct(1e9, state, state.heat.temperature);
+        // of the change of some 20 K, by 1e-13 of the residual
+        EXPECT_LT(error<2>(scene, state.heat.temperature,
+                           [](const double x) { return 320. + 8. * x; }),
+                  1e-7)
+            << type;
+      }
+    }
+
+    // T = cosh(A (1 - x)) / cosh(A) and q cosh(A x) / (k A sinh(A)), with A = 1
+    // / sqrt(kappa D), where 1 K and q are given on one side.
+    TEST(Heat, OfSidesConvergesWithTheSquareOfTheCells)
+    {
+      const double k = 5., kappa = k / (2. * 3.), D = 0.1;
+      const double A = 1. / std::sqrt(kappa * D);
+      for (const bool is_flux : {false, true})
+        for (const std::string type : {"rectangle", "diagonal triangles"}) {
+          std::vector<double> errors;
+          for (const unsigned int n : {8u, 16u, 32u}) {
+            Scene<2> scene(bar(
+                type, fmt::format("{}, {}", n, n / 4), "5", "0",
+                joined + (is_flux ? side("right", "  set heat flux = 7\n")
+                                  : side("left", "  set temperature = 1\n"))));
+            BodyHeat<2> heat(*scene.discretization, scene.communicator);
+            State state = start(scene, heat);
+            auto &T = state.heat.temperature;
+            HeatConduction<2> conduction(*scene.discretization,
+                                         scene.communicator);
+            const double given = conduction.conduct(D, state, T).given;
+            errors.push_back(error<2>(scene, T, [&](const double x) {
+              return is_flux ? 7. * std::cosh(A * x) / (k * A * std::sinh(A))
+                             : std::cosh(A * (1. - x)) / std::cosh(A);
+            }));
+            double stored = 0.;
+            const HeatCells<2> cells(*scene.discretization);
+            for (std::size_t c = 0; c < T.size(); ++c)
+              stored += cells.of(c / cells.n_corners())
+                            .capacity[c % cells.n_corners()] *
+                        T[c];
+            EXPECT_NEAR(stored / given, 1., 1e-11) << type << n;
+            if (is_flux) {
+              EXPECT_NEAR(given / (7. * 0.25 * D), 1., 1e-12);
+            }
+          }
+          for (unsigned int i = 0; i < 2; ++i)
+            EXPECT_NEAR(std::log2(errors[i] / errors[i + 1]), 2., 0.35)
+                << type << is_flux << ' ' << errors[i];
+        }
+    }
+
+    // Between its points straight, beyond them constant.
+    TEST(Heat, FactorsAreLinearInTheTemperature)
+    {
+      EXPECT_EQ(TemperatureFactor().at(300.), 1.);
+      const TemperatureFactor factor = {{300., 400., 800.}, {1., 0.5, 0.25}};
+      for (const auto &[T, exact] : {std::pair(0., 1.),
+                                     {300., 1.},
+                                     {350., 0.75},
+                                     {400., 0.5},
+                                     {600., 0.375},
+                                     {800., 0.25},
+                                     {1e4, 0.25}})
+        EXPECT_DOUBLE_EQ(factor.at(T), exact) << T;
+    }
+
+    // That of a law follows the face until it is open, the temperature of the
+    // face always.
+    TEST(Heat, OpenLawsKeepTheirTemperature)
+    {
+      Scene<2> scene(bar("rectangle", "2, 1", "0", "if(x < 0.5, 300, 400)",
+                         interface("all", "  set law = camacho-ortiz\n"
+                                          "  set strength = 1\n"
+                                          "  set toughness = 1\n"
+                                          "  set strength at temperatures = "
+                                          "300 : 1, 400 : 0.5\n")));
+      BodyHeat<2> heat(*scene.discretization, scene.communicator);
+      State state = start(scene, heat);
+      const std::size_t n = scene.discretization->points().n_points;
+      ASSERT_EQ(state.heat.of_laws.size(), n);
+      const auto before = state.heat.of_laws;
+      EXPECT_EQ(state.heat.at_faces, before);
+      state.kind[0] = PointKind::cohesive;
+      state.opening_max[0] = 0.1;
+      state.heat.of_points.assign(n, 1.);
+      heat.accept(state, [] {});
+      EXPECT_EQ(state.heat.of_laws[0], before[0]);
+      for (std::size_t i = 0; i < n; ++i) {
+        EXPECT_GT(state.heat.at_faces[i], before[i] + 0.1);
+        if (i > 0) {
+          EXPECT_EQ(state.heat.of_laws[i], state.heat.at_faces[i]);
+        }
+      }
     }
 
     // rho c V dT = the heat of the points of a cell, in halves on both sides.

@@ -28,7 +28,7 @@ namespace nsfd
         mass_per_area{1, -2, 0}, mass_per_length{1, -1, 0}, inertia{1, 2, 0},
         inertia_per_length{1, 1, 0}, temperature{0, 0, 0, 1},
         heat_capacity{0, 2, -2, -1}, conductivity{1, 1, -3, -1},
-        conductance{1, 0, -3, -1};
+        conductance{1, 0, -3, -1}, heat_flux{1, 0, -3};
   } // namespace units
 
   /** Closed or open interval a number must lie in; reported when it does not.

@@ -33,6 +33,7 @@ namespace nsfd
     double made = 0.;   ///< by friction, damage and flow
     double stored = 0.; ///< in the bodies
     double hottest = 0.;
+    double given = 0.; ///< by sides
   };
 
   /** One accepted step: a line of history.csv. */

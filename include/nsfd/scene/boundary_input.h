@@ -27,7 +27,10 @@ namespace nsfd
     Expression pressure; ///< Pa, positive pushes on the body
     bool has_pressure = false;
     bool exact_motion = false; ///< of the verification case
-    bool absorbs = false;      ///< waves that come in along the normal
+    /// of x, y, z, t; at most one of them
+    std::optional<Expression> temperature; ///< K
+    std::optional<Expression> heat_flux;   ///< W/m^2 into the body
+    bool absorbs = false; ///< waves that come in along the normal
     CrackEvent hold_at = CrackEvent::none;
   };
 } // namespace nsfd

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "nsfd/parameters/expression.h"
+#include "nsfd/scene/heat_input.h"
 #include "nsfd/scene/sliding_input.h"
 #include "nsfd/scene/where_input.h"
 
@@ -27,6 +28,7 @@ namespace nsfd
     /// of the whole obstacle, m/s, functions of t; all empty: it stands still
     std::array<std::optional<Expression>, 3> velocity;
     double friction = 0., restitution = 0.;
+    TemperatureFactor friction_factor;
     SlidingInput sliding;
     /// the block of SceneInput::interfaces with its law; -1: none
     int cohesion = -1;

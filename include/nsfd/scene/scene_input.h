@@ -160,4 +160,12 @@ namespace nsfd
   bool has_sliding_lift(const SceneInput &input);
   bool has_opening_viscosity(const SceneInput &input);
   bool has_crack_pressure(const SceneInput &input);
+  /** They depend on temperature; laws: strength or toughness. */
+  bool has_warm_laws(const SceneInput &input);
+  bool has_warm_friction(const SceneInput &input);
+  inline bool has_warm_faces(const SceneInput &input)
+  {
+    return has_warm_laws(input) || has_warm_friction(input);
+  }
+  bool has_heated_sides(const SceneInput &input);
 } // namespace nsfd

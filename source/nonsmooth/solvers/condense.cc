@@ -79,9 +79,10 @@ namespace nsfd
       const Interaction &law = problem.interactions[problem.interaction[i]];
       const Reach history{problem.opening_max[i],
                           problem.slip_max.empty() ? 0. : problem.slip_max[i]};
-      return law.friction * kappa(beta_of(law, problem.kind[i],
-                                          problem.opening_factor[i], history),
-                                  law.friction_exponent);
+      return friction_of(problem, i) *
+             kappa(beta_of(law, problem.kind[i], problem.opening_factor[i],
+                           history),
+                   law.friction_exponent);
     }
 
     /** W between components: a column is an application of W. */

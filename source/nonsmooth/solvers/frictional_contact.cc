@@ -146,8 +146,7 @@ namespace nsfd
         for (const std::size_t i : points_) {
           Contact contact;
           std::tie(contact.face, contact.number) = key_of(points, i);
-          contact.friction =
-              problem.interactions[problem.interaction[i]].friction;
+          contact.friction = friction_of(problem, i);
           for (unsigned int c = 0; c < dim; ++c)
             contact.q[c] = problem.free_velocity[i * dim + c] +
                            (c == 0 ? -problem.target[i]

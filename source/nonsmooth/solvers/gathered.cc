@@ -378,6 +378,7 @@ namespace nsfd
     for (const auto member :
          {&OneStepProblem<dim>::weight, &OneStepProblem<dim>::strength_factor,
           &OneStepProblem<dim>::opening_factor,
+          &OneStepProblem<dim>::friction_factor,
           &OneStepProblem<dim>::opening_max, &OneStepProblem<dim>::slip_max,
           &OneStepProblem<dim>::compression_stiffness,
           &OneStepProblem<dim>::viscosity, &OneStepProblem<dim>::dilatancy,
