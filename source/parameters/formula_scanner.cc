@@ -88,7 +88,7 @@ namespace nsfd::formula
              "prefixes f p n u m c k M G T, and their products: J/m^2"));
   }
 
-  /** What follows a number: `J/m^2`, `m/s`, `1/s`, or nothing. */
+  /** What follows a number: `J/m^2`, `J/(kg K)`, `1/s`, or nothing. */
   UnitScale Scanner::unit_suffix()
   {
     peek();
@@ -122,7 +122,8 @@ namespace nsfd::formula
         return result;
       }
       ++at_;
-      const auto next = unit_factor();
+      const auto next =
+          operation == '/' && peek() == '(' ? unit_bracket() : unit_factor();
       if (!next && !is_complete)
         fail(before, before + 1, "a unit is missing after `1/`");
       if (!next) {
@@ -132,6 +133,30 @@ namespace nsfd::formula
       is_complete = true;
       result = result * (operation == '/' ? power(*next, -1) : *next);
     }
+  }
+
+  /** `(kg K)`, `(m^2*K)` after a `/`; nothing is consumed if anything but units
+      stands in the bracket. */
+  std::optional<UnitScale> Scanner::unit_bracket()
+  {
+    const std::size_t before = at_, end = last_end_;
+    accept("(");
+    UnitScale product;
+    for (;;) {
+      peek();
+      if (constants_.count(text_.substr(at_, end_of_name(at_) - at_)) != 0)
+        break;
+      const auto next = unit_factor();
+      if (!next)
+        break;
+      product = product * *next;
+      if (accept(")"))
+        return product;
+      accept("*");
+    }
+    at_ = before;
+    last_end_ = end;
+    return {};
   }
 
   /** `um^2`; nothing is consumed if no unit stands here. */

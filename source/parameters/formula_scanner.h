@@ -90,6 +90,7 @@ namespace nsfd::formula
     UnitScale unit_suffix();
     [[noreturn]] void fail_no_unit(std::size_t begin,
                                    const std::string &word) const;
+    std::optional<UnitScale> unit_bracket();
     std::optional<UnitScale> unit_factor();
     int unit_exponent();
   };

@@ -175,6 +175,13 @@ namespace nsfd::test_expressions
     EXPECT_DOUBLE_EQ(read_expression("1.05 TPa", units::pressure)(0., 0., 0.),
                      1.05e12);
 
+    // products of units below the line, as they are printed
+    for (const char *text : {"800 J/(kg K)", "800 J/(kg*K)", "800 J / ( kg K )",
+                             "0.8 kJ/(K kg)", "800 J/kg/K"})
+      EXPECT_DOUBLE_EQ(read_expression(text)(0., 0., 0.), 800.) << text;
+    EXPECT_DOUBLE_EQ(read_expression("6 m/(2*y)", units::length)(0., 3., 0.),
+                     1.);
+
     // a file without any unit stays free in its choice
     EXPECT_DOUBLE_EQ(read_expression("3 * x", units::velocity)(2., 0., 0.), 6.);
     EXPECT_DOUBLE_EQ(read_expression("x", units::velocity)(2., 0., 0.), 2.);
