@@ -178,7 +178,9 @@ namespace nsfd::test_expressions
     // products of units below the line, as they are printed
     for (const char *text : {"800 J/(kg K)", "800 J/(kg*K)", "800 J / ( kg K )",
                              "0.8 kJ/(K kg)", "800 J/kg/K"})
-      EXPECT_DOUBLE_EQ(read_expression(text)(0., 0., 0.), 800.) << text;
+      EXPECT_DOUBLE_EQ(read_expression(text, units::heat_capacity)(0., 0., 0.),
+                       800.)
+          << text;
     EXPECT_DOUBLE_EQ(read_expression("6 m/(2*y)", units::length)(0., 3., 0.),
                      1.);
 
