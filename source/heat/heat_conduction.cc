@@ -185,19 +185,11 @@ namespace nsfd
   std::vector<double>
   HeatConduction<dim>::at_faces(const std::vector<double> &temperature)
   {
-    const unsigned int n = cells_.n_corners();
     std::vector<std::array<Trace, 2>> traces(sides_.size());
     for (std::size_t i = 0; i < sides_.size(); ++i)
-      for (unsigned int s = 0; s < 2; ++s) {
-        const Side &side = sides_[i][s];
-        if (side.cell < 0)
-          continue;
-        const double *const N = &cells_.of(std::size_t(side.cell))
-                                     .values[std::size_t(side.slot) * n];
-        for (unsigned int v = 0; v < n; ++v)
-          traces[i][s].value +=
-              N[v] * temperature[std::size_t(side.cell) * n + v];
-      }
+      for (unsigned int s = 0; s < 2; ++s)
+        if (sides_[i][s].cell >= 0)
+          traces[i][s] = trace_of(sides_[i][s], temperature.data());
     exchange(traces, 713);
     std::vector<double> result(sides_.size());
     for (std::size_t i = 0; i < result.size(); ++i)

@@ -1,5 +1,6 @@
 #include "program.h"
 #include "restart.h"
+#include "rubbing_block.h"
 
 #include <gtest/gtest.h>
 
@@ -214,55 +215,16 @@ end
       }
     }
 
-    /** Rubs on a disc, and tears on the left; both while it becomes warm. */
-    const std::string block = R"(
-set dimension = 2
-subsection Mesh
-  set type         = rectangle
-  set upper corner = 40 mm, 20 mm
-  set cells        = 8, 4
-end
-subsection Material: lining
-  set Young modulus    = 2 GPa
-  set Poisson ratio    = 0.3
-  set density          = 2000 kg/m^3
-  set heat capacity    = 2 J/kg/K
-  set conductivity     = 2 W/m/K
-  set initial velocity x = 10 m/s
-end
-subsection Interface: all
-  set law                       = camacho-ortiz
-  set strength                  = 2 MPa
-  set toughness                 = 20 J/m^2
-  set friction                  = 0.4
-  set contact conductance       = 5 kW/m^2/K
-  set strength at temperatures  = 293 K : 1, 320 K : 0.5
-  set toughness at temperatures = 293 K : 1, 320 K : 0.7
-  set friction at temperatures  = 293 K : 1, 350 K : 0.2
-end
-subsection Obstacle: disc
-  set where                    = bottom
-  set point                    = 0, 0
-  set normal                   = 0, 1
-  set friction                 = 0.4
-  set friction at temperatures = 293 K : 1, 350 K : 0.5
-end
-subsection Boundary: left
-  set where      = y > 19.99 mm && x < 15 mm
-  set velocity x = 10 m/s
-  set velocity y = 0.5 m/s
-end
-subsection Boundary: right
-  set where      = y > 19.99 mm && x > 15 mm
-  set velocity x = 10 m/s
-  set velocity y = -0.1 m/s
-end
-subsection Time
-  set end = 0.2 ms
-end
-)";
+    /** The rubbing block, whose faces become warm and weak at once. */
+    const std::vector<std::string> warm_block = {
+        "Material: lining/heat capacity=2 J/kg/K",
+        "Interface: all/strength at temperatures=293 K : 1, 320 K : 0.5",
+        "Interface: all/toughness at temperatures=293 K : 1, 320 K : 0.7",
+        "Interface: all/friction at temperatures=293 K : 1, 350 K : 0.2",
+        "Obstacle: disc/friction at temperatures=293 K : 1, 350 K : 0.5"};
 
     const std::vector<std::string> cold_block = {
+        "Material: lining/heat capacity=2 J/kg/K",
         "Interface: all/strength at temperatures=293 K : 1",
         "Interface: all/toughness at temperatures=293 K : 1",
         "Interface: all/friction at temperatures=293 K : 1",
@@ -275,14 +237,15 @@ end
            {explicit_steps, implicit_steps("2 us"),
             and_more(implicit_steps("2 us"), {"Time/theta=1"})}) {
         const std::string name = scheme.back().substr(5, 5);
-        const Result warm = warm_run(workspace, name, block, scheme);
+        const Result warm = warm_run(workspace, name, rubbing_block,
+                                     and_more(scheme, warm_block));
         const double taken =
             warm.dissipated("damage") + warm.dissipated("friction");
         EXPECT_GT(warm.dissipated("damage"), 0.02 * taken) << name;
         EXPECT_GT(warm.dissipated("friction"), 0.02 * taken) << name;
         EXPECT_NEAR(heat(warm, "made") / taken, 1., 1e-12) << name;
         EXPECT_NEAR(heat(warm, "stored") / taken, 1., 1e-12) << name;
-        const Result cold = warm_run(workspace, name + "_cold", block,
+        const Result cold = warm_run(workspace, name + "_cold", rubbing_block,
                                      and_more(scheme, cold_block));
         EXPECT_LT(warm.dissipated("friction"),
                   0.9 * cold.dissipated("friction"))
@@ -296,10 +259,11 @@ end
     TEST(WarmLaws, AreTheSameOnAnyRanks)
     {
       const Workspace workspace;
-      const Result one = warm_run(workspace, "1", block, explicit_steps);
+      const auto set = and_more(explicit_steps, warm_block);
+      const Result one = warm_run(workspace, "1", rubbing_block, set);
       for (const unsigned int ranks : {2u, 3u})
-        EXPECT_EQ(warm_run(workspace, std::to_string(ranks), block,
-                           explicit_steps, ranks)
+        EXPECT_EQ(warm_run(workspace, std::to_string(ranks), rubbing_block, set,
+                           ranks)
                       .history_text,
                   one.history_text)
             << ranks;
@@ -310,8 +274,8 @@ end
       for (const auto &scheme : {explicit_steps, implicit_steps("2 us")}) {
         const Workspace workspace;
         const auto file = workspace.path() / "block.prm";
-        write_text(file, block);
-        const Launch launch{file, scheme};
+        write_text(file, rubbing_block);
+        const Launch launch{file, and_more(scheme, warm_block)};
         const Result whole = good_run(workspace, "whole", launch);
         Result resumed;
         ASSERT_NO_FATAL_FAILURE(
@@ -324,10 +288,14 @@ end
     {
       const Workspace workspace;
       const auto file = workspace.path() / "block.prm";
-      write_text(file, block);
+      write_text(file, rubbing_block);
       const auto message = [&](const std::string &set) {
-        const Outcome outcome =
-            nsfd(workspace, {file.string(), "--check", "--set", set});
+        std::vector<std::string> words{file.string(), "--check"};
+        const std::string entry = set.substr(0, set.find('=') + 1);
+        for (const auto &one : and_more(warm_block, {set}))
+          if (one == set || one.compare(0, entry.size(), entry) != 0)
+            words.insert(words.end(), {"--set", one});
+        const Outcome outcome = nsfd(workspace, words);
         EXPECT_EQ(outcome.exit_code, 1) << set;
         return outcome.err;
       };
