@@ -181,7 +181,6 @@ namespace nsfd
                                        std::uint64_t(b),
                                        unsigned(cells_.centre_node(b))});
     set_.surfaces.n_vertices = cells_.n_nodes() + table_.n_rigid;
-    set_.surfaces.all_wholes = true;
     set_.surfaces.is_behind = [this](const unsigned int vertex,
                                      const unsigned int facet) {
       return is_behind(vertex, facet);

@@ -55,8 +55,8 @@ namespace nsfd
         }
         if (valid_.empty())
           return;
-        if (valid_.size() == 1 || (!valid_.empty() && !surfaces_.all_wholes))
-          touches.push_back(*kept(best(valid_, same_length * own.size)));
+        if (valid_.size() == 1)
+          touches.push_back(valid_.front());
         else
           add_of_wholes(same_length * own.size, touches);
       }

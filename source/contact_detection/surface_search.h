@@ -64,9 +64,6 @@ namespace nsfd
     /// the way from a vertex to a facet leads through the body of both, and it
     /// touches no such facet, however near it is; null: there are none
     std::function<bool(unsigned int vertex, unsigned int facet)> is_behind;
-    /// a point touches one facet of every whole that it is near to; else the
-    /// nearest of all alone
-    bool all_wholes = false;
   };
 
   /**

@@ -18,6 +18,8 @@ namespace nsfd
     /// what rows with a prescribed velocity may give or take by what is left of
     /// it, see RowWork, J: of bodies that share nodes
     double row_energy = std::numeric_limits<double>::infinity();
+    /// what contacts that close may give by what the tolerance leaves, J
+    double contact_energy = std::numeric_limits<double>::infinity();
 
     /// matrices of the bodies are those of this problem alone: no factor of
     /// them serves later ones

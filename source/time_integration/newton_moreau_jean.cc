@@ -103,10 +103,12 @@ namespace nsfd
     SolverReport total;
     SolverControl present = control;
     present.row_energy = std::numeric_limits<double>::infinity();
+    present.contact_energy = std::numeric_limits<double>::infinity();
     present.bodies_change = true;
     // what is left in a step of rigid bodies is there in all later ones
     if (only_rigid_)
       present.tolerance *= 0.1;
+    bool last = false;
     for (unsigned int round = 0;; ++round) {
       if (round > 0)
         bodies_->linearise();
@@ -144,11 +146,15 @@ namespace nsfd
         throw lost();
       if (!has_settled(old, h, control, round))
         continue;
-      // rows need their last digits once, in the last round
-      if (present.row_energy == control.row_energy ||
-          !this->step_problem_.gives_by_rows(
-              points.problem, control, energy_scale_, impulse_, *evaluation))
+      // contacts and rows need their last digits once, in the last round
+      const auto &step = this->step_problem_;
+      if (last || (!step.gives_by_contact(points.problem, control, points.old,
+                                          impulse_, *evaluation) &&
+                   !step.gives_by_rows(points.problem, control, energy_scale_,
+                                       impulse_, *evaluation)))
         return total;
+      last = true;
+      present.contact_energy = control.contact_energy;
       present.row_energy = control.row_energy;
     }
   }
@@ -202,14 +208,8 @@ namespace nsfd
     {
       const Stopwatch watch(this->timings_.solve);
       const Charge charge(Cost::solver);
-      // joints of large motions depend on each other: along what they leave
-      // open, steps for a last digit let impulses grow without end
-      report.solver =
-          iterate(old, h,
-                  this->input_.large_motion
-                      ? this->step_problem_.control(idle_rounds)
-                      : this->step_problem_.control(idle_rounds, h, old),
-                  evaluation);
+      report.solver = iterate(
+          old, h, this->step_problem_.control(idle_rounds, h, old), evaluation);
     }
     const StepPoints<dim> points = bodies_->points();
     save_problem<dim>(this->input_, points.problem, this->delassus_,

@@ -31,7 +31,7 @@ namespace nsfd
 
     /** What the input asks of the solver of a round of statics. */
     SolverControl control(unsigned int idle_rounds) const;
-    /** Of a step from @p old: what rows may give as well. */
+    /** Of a step from @p old: what contacts and rows may give as well. */
     SolverControl control(unsigned int idle_rounds, double time_step,
                           const State &old) const;
 
@@ -61,6 +61,13 @@ namespace nsfd
           double energy_scale, const State &old, std::vector<double> &impulse,
           LawEvaluation<dim> &evaluation, bool keeps_joints = false);
 
+    /** Contacts of this solution give more than @p control allows. Collective.
+     */
+    bool gives_by_contact(const OneStepProblem<dim> &problem,
+                          const SolverControl &control, const State &old,
+                          const std::vector<double> &impulse,
+                          const LawEvaluation<dim> &evaluation) const;
+
     /** Rows of this solution give more than @p control allows, and than
         round-off of their velocities does. Collective. */
     bool gives_by_rows(const OneStepProblem<dim> &problem,
@@ -73,10 +80,6 @@ namespace nsfd
     const DrivenMotion<dim> &motion() const { return *motion_; }
 
   private:
-    bool gives_by_contact(const OneStepProblem<dim> &problem,
-                          const SolverControl &control, const State &old,
-                          const std::vector<double> &impulse,
-                          const LawEvaluation<dim> &evaluation) const;
     void solve_closer(NonsmoothSolver<dim> &solver,
                       const OneStepProblem<dim> &problem, SolverControl control,
                       double energy_scale, std::vector<double> &impulse,
