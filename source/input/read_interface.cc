@@ -100,7 +100,7 @@ namespace nsfd
                                          : "without history",
                       scene.large_motion ? "motion = large"
                                          : history_dependent_model(scene)),
-          "write rigid");
+          "write joined");
     }
 
     void check_intact_faces(SectionReader &reader, const InterfaceInput &input,

@@ -248,12 +248,12 @@ namespace nsfd::large_motion_scenes::test_large_motion_refusals
 
         // --- parts that follow small motions only
         {"bonded_law", &plane, "law = contact", "law = bonded",
-         "law = bonded joins bodies that turn and strain little", "write rigid",
-         "set law = bonded"},
+         "law = bonded joins bodies that turn and strain little",
+         "write joined", "set law = bonded"},
         {"bonded_faces", &space, "set friction = 0.5",
          "set intact faces = bonded\n  set friction = 0.5",
          "intact faces = bonded joins bodies that turn and strain little",
-         "write rigid", "set intact faces = bonded"},
+         "write joined", "set intact faces = bonded"},
         {"spring_of_extrinsic", &space, "set friction = 0.5",
          "set intact faces = spring\n  set friction = 0.5",
          "the extrinsic law camacho-ortiz has none",
