@@ -66,8 +66,9 @@ namespace end_to_end::test_heat
         for (const unsigned int ranks : {2u, 3u}) {
           const Result several =
               warm_run(workspace, name + std::to_string(ranks), set, ranks);
-          if (set.size() == 2)
+          if (set.size() == 2) {
             EXPECT_EQ(several.history_text, one.history_text) << ranks;
+          }
           for (const char *what : {"made", "stored", "hottest"})
             EXPECT_NEAR(heat(several, what) / heat(one, what), 1., 1e-6)
                 << ranks << what;
