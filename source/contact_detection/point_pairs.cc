@@ -71,8 +71,9 @@ namespace nsfd
       {
         const auto &facet_a = surfaces_.facets[a.pair.facet];
         const auto &facet_b = surfaces_.facets[b.pair.facet];
+        // what is_outside() takes to lie on the other facet, or less deep
         const double rounding =
-            same_length * std::min(own_size(a), own_size(b));
+            same_length * std::max(own_size(a), own_size(b));
         if (facet_a.whole != facet_b.whole || a.cuts || b.cuts ||
             std::max(a.pair.gap, b.pair.gap) > rounding || notch(a, b))
           return false;

@@ -127,6 +127,25 @@ namespace surface_scene::test_surface_search
     EXPECT_EQ(held.count({3, 103, 102}), 1u);
   }
 
+  // A tip rests on the right side of another one, as near to it as round-off
+  // of the longer one of its own sides is, and not of the shorter one. It is
+  // not below the left side, however deep that is over there.
+  TEST(SurfaceSearch, TipThatRestsBesideAnotherTip)
+  {
+    for (const double gap : {0., 5e-13, 1e-12, 2e-12, 5e-12, 1e-11, 1e-10}) {
+      Scene<2> scene;
+      add_polygon(scene, 0, {{-1., -2.}, {1., -2.}, {0., 0.}}); // 100 to 102
+      const double x = 0.02 + gap * std::sqrt(5.) / 2.;
+      add_polygon(scene, 1, {{x, -0.04}, {x + 0.2, 0.5}, {x - 0.5, 1.}});
+      scene.all_points();
+      std::set<std::uint64_t> touched;
+      for (const auto &pair : scene.find(0.01).points)
+        if (scene.surfaces.points[pair.index].vertex == 3)
+          touched.insert(scene.surfaces.facets[pair.facet].key);
+      EXPECT_EQ(touched, (std::set<std::uint64_t>{101})) << gap;
+    }
+  }
+
   // Two acute tips pass through each other like the blades of scissors: both
   // are in front of the other's lower side, which goes down to its end by
   // `fall`, and below its upper one.
