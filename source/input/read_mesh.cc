@@ -349,19 +349,21 @@ namespace nsfd
                                   "of the polynomials in a cell");
     check_degree(reader, scene);
     const bool at_nodes = scene.time.scheme.at_nodes;
+    const bool may_crack = std::any_of(
+        scene.interfaces.begin(), scene.interfaces.end(),
+        [](const InterfaceInput &interface) { return bool(interface.law); });
     // Joined cells part at their nodes: with other points there would be more
-    // conditions of contact than motions. Points of a face that is divided in
+    // conditions of contact than motions. Faces that turn as they open roll
+    // over their last point that holds: between the ends of the face, a corner
+    // would be inside of the other cell. Points of a face that is divided in
     // the run keep what they have inside of it. Quasi-static cracks are sharper
     // than nodes: a point behind the front must not carry what one before it
     // does.
-    const bool cracks_slowly =
-        scene.statics && scene.statics->steps &&
-        std::any_of(scene.interfaces.begin(), scene.interfaces.end(),
-                    [](const InterfaceInput &interface) {
-                      return bool(interface.law);
-                    });
-    const bool joined =
-        scene.has_bonded_faces() && !at_nodes && !cracks_slowly &&
+    const bool joined = scene.has_bonded_faces() &&
+                        !(scene.statics && scene.statics->steps && may_crack),
+               turns = scene.large_motion && may_crack;
+    const bool parts_at_corners =
+        (joined || turns) &&
         !scene.axisymmetric && // a node on the axis has no area
         !reader.has("interface points") && !file.find("Adaptivity") &&
         !(scene.dimension == 3 && has_simplices(scene) && input.degree > 1);
@@ -375,7 +377,8 @@ namespace nsfd
                    "would leave vertices without mass",
                    "write consistent, or degree = 1");
     input.interface_quadrature = reader.choice(
-        "interface quadrature", at_nodes || joined ? "gauss lobatto" : "gauss",
+        "interface quadrature",
+        at_nodes || parts_at_corners ? "gauss lobatto" : "gauss",
         {"gauss", "gauss lobatto", "quarter points"},
         "gauss, gauss lobatto (tetrahedra: vertices of a face) or quarter "
         "points");
