@@ -377,7 +377,8 @@ once() {
 
 Every entry of a scene, with its default and its text: a whole scene, then the
 blocks that it does not use. An entry that several blocks of a kind have is in
-the first of them only. For your own scene,
+the first of them only, and an optional one that ends with `x` or `xx` stands for
+the other directions as well. For your own scene,
 
     ./nsfd FILE.prm --print-parameters
 
