@@ -578,27 +578,19 @@ END
   sections prm/benchmarks/brake_block.prm 'Interface: lining|Boundary: top'
   cat <<'END'
 
-## All names: `./nsfd --list`
+## Laws, meshes, schemes and solvers
+
+`./nsfd --list` prints these and all other names: of [materials](materials.md),
+[indicators](adaptivity.md#a-step), [observables](observables.md), shapes of
+[obstacles](large_motion.md#entries) and [verification cases](adding.md#a-verification-case).
 
 ```
 END
   # what the examples of laws say is above
   ./nsfd --list | awk '
     /^[^ ]/ { kind = $0 }
-    kind ~ /^(cohesive law|observable|verification case)$/ && /for example:/ { next }
-    # solver.md has them
-    kind == "solver of stored problems" { next }
-    # names only, lines of them
-    kind == "verification case" && /^  / {
-      sub(/^  /, "")
-      sub(/   .*/, "")
-      cases = cases (cases == "" ? "  " : ", ") $0
-      next
-    }
-    cases != "" {
-      print cases
-      cases = ""
-    }
+    kind !~ /^(interface law|cohesive law|mesh|time scheme|solver)$/ { next }
+    /for example:/ { next }
     sub(/ +generator of deal\.II.*/, "") {
       generators = generators (generators == "" ? "" : ",") $0
       next
