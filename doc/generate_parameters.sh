@@ -322,7 +322,7 @@ sections() {
 # An entry that several blocks of a kind have is printed in the first of them
 # only; within a block x, y, z and so on share one text. What selects a part is
 # printed always, and so are the entries of a law that not all laws have. In the
-# whole scene every entry stays, and repeated texts go.
+# whole scene every entry that is set stays, and repeated texts go.
 once() {
   awk '
     function entry(line) {
@@ -340,7 +340,8 @@ once() {
     }
     function is_dropped(line,    name) {
       name = entry(line)
-      if (whole || name ~ /^(model|type|law|shape|scheme|mode)$/) return 0
+      if (whole) return line ~ /^  # set /
+      if (name ~ /^(model|type|law|shape|scheme|mode)$/) return 0
       if (kind == "Interface") return name in common
       return first[key(line)] != block
     }
@@ -374,23 +375,22 @@ once() {
   cat <<'END'
 # Parameters
 
-This page is written by `sh doc/generate_parameters.sh` from what the program
-prints; do not edit it. For your own scene,
+Every entry of a scene, with its default and its text: a whole scene, then the
+blocks that it does not use. An entry that several blocks of a kind have is in
+the first of them only, and an optional one that ends with `x` or `xx` stands for
+the other directions as well. For your own scene,
 
     ./nsfd FILE.prm --print-parameters
 
-prints the same: every entry that the parts of *this* scene have, with its
-value and its text. An entry that no part of the scene reads is an error, so a
-page of all entries does not exist; below are a whole scene and then the blocks
-that it does not use. An entry that several blocks of a kind have is in the first
-of them only.
+prints the entries that its parts have; one that no part reads is an error. This
+page is written by `sh doc/generate_parameters.sh`; do not edit it.
 
 ## How values are written
 
 - Bare numbers are SI, or any consistent set of units. With a suffix they are
-  checked: `135 GPa`, `0.2 um`, `0.5 J/m^2`, `-9.81 m/s^2`. Units: `m s g Pa N J
-  Hz` with the prefixes `f p n u m c k M G T`, and `min`, `h`; products with `*`,
-  quotients with `/`, powers with `^`.
+  checked: `135 GPa`, `0.2 um`, `0.5 J/m^2`, `-9.81 m/s^2`, `480 J/(kg K)`. Units:
+  `m s g Pa N J W Hz K` with the prefixes `f p n u m c k M G T`, and `min`, `h`;
+  products with `*`, quotients with `/`, powers with `^`.
 - Wherever a number stands, a formula may stand: `+ - * / ^`, comparisons,
   `&&`, `||`, `pi`, `true`, `false`, the names of section `Constants`, and
   `sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp ln log
@@ -398,13 +398,13 @@ of them only.
   heaviside if(condition, a, b)`. Entries that say so also take `x`, `y`, `z`
   and `t`.
 - `where` is `all`, a side of the bounding box (`left right bottom top front
-  back`, boundary faces only), `between materials [a, b]` (interior faces), the
-  name of a body, a material or boundary id of a generator's mesh, or a
-  condition on the centre of the cell or face. A Boundary block that does not
-  say it is on the side, the group or the body of its name. The first Material block that
-  holds owns a cell, the first Interface block an interior face; Boundary and
-  Obstacle blocks add up. Of Contact blocks the first that names the materials
-  of two bodies is theirs; bodies without one pass through each other.
+  back`, boundary faces only), `between materials [a, b]` or `between groups [a,
+  b]` (interior faces), a [group of the mesh](meshes.md#groups), the name of a
+  body, a material or boundary id of a generator's mesh, or a condition on the
+  centre of the cell or face. A Boundary block that does not say it is on the
+  side, the group or the body of its name. The first Material block that holds
+  owns a cell, the first Interface block an interior face; Boundary and Obstacle
+  blocks add up.
 - A line ends with `\` if the next one continues it; `#` starts a comment;
   `include FILE` reads another file.
 - Files are UTF-8 text of at most 4 MiB, 20 000 statements and 20 000 bytes a
@@ -416,8 +416,7 @@ of them only.
 - `--set 'Section/name=value'` changes an entry from the command line; a block
   is named in full: `--set 'Interface: all/toughness=2 J/m^2'`.
 - Former words of entries and values (`maximum halvings`, `leapfrog`, `global`,
-  `element-wise`, `chain`, `contacts alone`) go on working; a note names today's
-  word. `crossings` and `courant` are the same.
+  `element-wise`, `chain`, `contacts alone`, `crossings`) are read as well.
 
 ## A whole scene: `prm/quickstart.prm`
 
@@ -450,16 +449,10 @@ END
 
 ## Large motions: rotations and strains of any size
 
-`set motion = large` at the top. Materials are then `rigid`, `saint-venant
-kirchhoff` or `neo-hookean` (in plane strain and in space), obstacles may be
-round and may move, and surfaces touch wherever they meet. `mass` and `principal
-inertia` stand in place of those of the cells: in the plane they are per
-thickness, and the inertia is one number, about z. `Boundary/pressure` is a dead
-load: along the normal and per area of the face at t = 0.
-
-There is no mesh that changes, no bonded face (intact faces of extrinsic laws
-are `rigid`), no equilibrium and no `path = assembled`; schemes are `moreau-jean`, `explicit` and
-`auto`.
+`set motion = large` at the top; [large_motion.md](large_motion.md) says what
+materials, contacts and schemes there are. `mass` and `principal inertia` stand in
+place of those of the cells: in the plane they are per thickness, and the inertia
+is one number, about z.
 
 END
   sections "$scratch/large.prm" \
@@ -562,23 +555,12 @@ END
     --set 'Bar/mass=1.25 kg/m^2' --set 'Bar/speed=1 cm/s' --set 'Bar/step=1 us'
   cat <<'END'
 
-## A study: `nsfd study FILE.prm`, or a file with these sections
+## A study, exact values
 
-[studies.md](studies.md) says what they mean.
-
-```
-END
-  ./nsfd study prm/verification/mode.prm --print-parameters \
-    --vary 'Discretization/degree=1..3' \
-    --vary 'Mesh/cells=[8*2^0..2, 1] & Time/step=4/2^0..2 us'
-  cat <<'END'
-```
-
-## Exact values: `prm/verification/midplane.prm`
-
-END
-  sections prm/verification/midplane.prm 'Verification'
-  cat <<'END'
+Sections `Study` and `Vary: name`: [studies.md](studies.md#section-study). A section
+`Verification` names the `case` that a run is compared with
+([adding.md](adding.md#a-verification-case)); `--print-parameters` of a scene of
+`prm/verification` shows its entries.
 
 ## Meshes that change: `prm/benchmarks/branching.prm`
 
@@ -596,25 +578,19 @@ END
   sections prm/benchmarks/brake_block.prm 'Interface: lining|Boundary: top'
   cat <<'END'
 
-## All names: `./nsfd --list`
+## Laws, meshes, schemes and solvers
+
+`./nsfd --list` prints these and all other names: of [materials](materials.md),
+[indicators](adaptivity.md#a-step), [observables](observables.md), shapes of
+[obstacles](large_motion.md#entries) and [verification cases](adding.md#a-verification-case).
 
 ```
 END
   # what the examples of laws say is above
   ./nsfd --list | awk '
     /^[^ ]/ { kind = $0 }
-    kind ~ /^(cohesive law|verification case)$/ && /for example:/ { next }
-    # names only, lines of them
-    kind == "verification case" && /^  / {
-      sub(/^  /, "")
-      sub(/   .*/, "")
-      cases = cases (cases == "" ? "  " : ", ") $0
-      next
-    }
-    cases != "" {
-      print cases
-      cases = ""
-    }
+    kind !~ /^(interface law|cohesive law|mesh|time scheme|solver)$/ { next }
+    /for example:/ { next }
     sub(/ +generator of deal\.II.*/, "") {
       generators = generators (generators == "" ? "" : ",") $0
       next
@@ -624,9 +600,7 @@ END
       print generators
       generators = ""
     }
-    # what the same solver is said to be above
-    kind ~ /^solver/ && $0 in told { sub(/   .*/, "") }
-    { told[$0] = 1; print }'
+    { print }' | sed '${/^$/d}'
   printf '```\n'
 } | once >"$scratch/parameters.md"
 mv "$scratch/parameters.md" doc/parameters.md

@@ -19,7 +19,7 @@ trap 'rm -rf "$scratch"' EXIT INT TERM
 # What a reader writes, or what a run leaves.
 cat >"$scratch/elsewhere" <<'END'
 wedge.prm mesh.prm scene.prm parameters.prm a.prm b.prm midplane.prm plate.msh
-beam.geo sizes.geo linear_softening.cc jacobi.cc free_fall.cc free_fall.prm
+beam.geo sizes.geo linear_softening.cc free_fall.cc free_fall.prm
 cracks_final.svg bar.svg grip.svg energies.svg floor.svg speeds.svg slopes.svg
 END
 
