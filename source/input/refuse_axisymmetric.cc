@@ -73,13 +73,14 @@ namespace nsfd
     {
       const auto blocks = file.open_blocks("Observable");
       for (std::size_t k = 0; k < scene.observables.size(); ++k)
-        if (scene.observables[k].type == "energy release") {
+        if (scene.observables[k].type == "energy release rate") {
           SectionReader reader(*blocks[k], errors);
-          reader.error("type",
-                       "type = energy release is not available for plane = "
-                       "axisymmetric: its integrals are those of the plane",
-                       "take the opening of the crack faces, type = crack, or "
-                       "leave it out");
+          reader.error(
+              "type",
+              "type = energy release rate is not available for "
+              "plane = axisymmetric: its integrals are those of the plane",
+              "take the opening of the crack faces, type = crack, or "
+              "leave it out");
         }
     }
   } // namespace

@@ -52,10 +52,12 @@ namespace nsfd
         const double ratio = model.dynamic_step(input) / crossing;
         return model.path == "local"
                    ? fmt::format("blocks of single bodies, because a step is "
-                                 "{:.3g} crossings of a cell, at most 5",
+                                 "{:.3g} times the time that waves take across "
+                                 "a cell, at most 5",
                                  ratio)
                    : fmt::format("one system of all bodies, because a step is "
-                                 "{:.3g} crossings of a cell, more than 5",
+                                 "{:.3g} times the time that waves take across "
+                                 "a cell, more than 5",
                                  ratio);
       };
       return fmt::format("{}, {}", model.path, why());

@@ -454,6 +454,10 @@ end
           {material() + "subsection Discretization\n  set degree = 2\n"
                         "  set mass = lumped\nend\n",
            "would have no mass"},
+          {material() + "subsection Observable: G\n"
+                        "  set type = energy release rate\n  set at = 0.5, 0\n"
+                        "  set radii = 0.2, 0.3\nend\n",
+           "its integrals are those of the plane"},
       };
       for (const Refused &one : cases) {
         const std::string text = mesh + one.rest + rest;
