@@ -355,13 +355,14 @@ namespace nsfd
     // Joined cells part at their nodes: with other points there would be more
     // conditions of contact than motions. Faces that turn as they open roll
     // over their last point that holds: between the ends of the face, a corner
-    // would be inside of the other cell. Points of a face that is divided in
-    // the run keep what they have inside of it. Quasi-static cracks are sharper
-    // than nodes: a point behind the front must not carry what one before it
-    // does.
+    // would be inside of the other cell. (In space the rows of rigid points at
+    // a corner of eight cells depend on each other three times over, and
+    // Newton's iteration idles.) Points of a face that is divided in the run
+    // keep what they have inside of it. Quasi-static cracks are sharper than
+    // nodes: a point behind the front must not carry what one before it does.
     const bool joined = scene.has_bonded_faces() &&
                         !(scene.statics && scene.statics->steps && may_crack),
-               turns = scene.large_motion && may_crack;
+               turns = scene.large_motion && may_crack && scene.dimension == 2;
     const bool parts_at_corners =
         (joined || turns) &&
         !scene.axisymmetric && // a node on the axis has no area
