@@ -226,8 +226,9 @@ namespace nsfd
   }
 
   /**
-   * What stays closed, or apart, does no work but that of what the tolerance
-   * leaves, and in many steps it adds up to more than the certificate allows.
+   * What stays closed, or apart, and what sticks does no work but that of what
+   * the tolerance leaves, and in many steps it adds up to more than the
+   * certificate allows.
    */
   template <int dim>
   bool StepProblem<dim>::gives_by_contact(
@@ -243,11 +244,18 @@ namespace nsfd
       const double P = problem.kind[i] == PointKind::free
                            ? impulse[i * dim]
                            : solution.contact_impulse;
-      if (problem.contact[i])
+      if (!problem.contact[i])
+        continue;
+      given += std::max(
+          0., P * (problem.theta * evaluation.velocity[i * dim] +
+                   (1. - problem.theta) * old.relative_velocity[i * dim] -
+                   solution.frozen.lift));
+      if (solution.frozen.threshold > 0.)
         given += std::max(
-            0., P * (problem.theta * evaluation.velocity[i * dim] +
-                     (1. - problem.theta) * old.relative_velocity[i * dim] -
-                     solution.frozen.lift));
+            0.,
+            friction_work<dim>(problem, i, solution, &impulse[i * dim],
+                               &evaluation.velocity[i * dim],
+                               &old.relative_velocity[i * dim], problem.theta));
     }
     return delassus_.communicator().sum(&given, 1) > control.contact_energy;
   }
