@@ -109,17 +109,20 @@ namespace nsfd::vtk
       return value;
     }
 
-    void use(Allowance &allowance, const std::uint64_t n)
+    /** Of @p n bytes of numbers, each of which becomes a double. */
+    void use(Allowance &allowance, const std::uint64_t n,
+             const std::size_t size)
     {
-      if (n > allowance)
+      const std::uint64_t most = allowance / sizeof(double) * size;
+      if (n > most)
         throw BadBytes("unpacked, the file is more than 200 times as large; "
                        "save it without compression if it is right");
-      allowance -= n;
+      allowance -= n / size * sizeof(double);
     }
 
     std::string unpacked(Source &source, const std::string &text,
-                         const std::size_t at, const Encoding &encoding,
-                         Allowance &allowance)
+                         const std::size_t at, const std::size_t number_size,
+                         const Encoding &encoding, Allowance &allowance)
     {
       const std::size_t size = encoding.header_size;
       const auto word = [&](const std::string &bytes, const std::size_t i) {
@@ -146,7 +149,7 @@ namespace nsfd::vtk
       std::string result;
       for (std::size_t b = 0, from = 0; b < n_blocks; from += packed[b++]) {
         uLongf n = b + 1 < n_blocks || last == 0 ? block : last;
-        use(allowance, n);
+        use(allowance, n, number_size);
         const std::size_t before = result.size();
         result.resize(before + n);
         const uLongf expected = n;
@@ -203,16 +206,20 @@ namespace nsfd::vtk
   } // namespace
 
   std::string bytes_of(const std::string &text, const std::size_t at,
-                       const bool is_base64, const Encoding &encoding,
-                       Allowance &allowance)
+                       const bool is_base64, const std::string &type,
+                       const Encoding &encoding, Allowance &allowance)
   {
+    const auto found = types().find(type);
+    if (found == types().end())
+      throw BadBytes(fmt::format("the type `{}` is not read", type));
+    const std::size_t number_size = found->second.size;
     Source source(text, at, is_base64);
     if (encoding.is_compressed)
-      return unpacked(source, text, at, encoding, allowance);
+      return unpacked(source, text, at, number_size, encoding, allowance);
     const std::size_t size = encoding.header_size;
     const std::uint64_t n =
         natural(source.take(size).data(), size, encoding.is_big_endian);
-    use(allowance, n);
+    use(allowance, n, number_size);
     if (source.is_aligned())
       return source.take(n);
     // header and values were encoded together

@@ -19,16 +19,18 @@ namespace nsfd::vtk
     bool is_compressed = false; ///< by zlib
   };
 
-  /** Bytes that may still be unpacked: what is left of those of a file. */
+  /** Memory that values may still take, of what there is for a file. */
   using Allowance = std::size_t;
 
   /**
    * The bytes of an array that begins at @p at of @p text, which is raw or
    * base64: header, then bytes or blocks of zlib. Throws BadBytes if they are
-   * damaged or more than @p allowance, which is reduced.
+   * damaged, or if their values, of this type, take more than @p allowance,
+   * which is reduced.
    */
   std::string bytes_of(const std::string &text, std::size_t at, bool is_base64,
-                       const Encoding &encoding, Allowance &allowance);
+                       const std::string &type, const Encoding &encoding,
+                       Allowance &allowance);
 
   /** Numbers of a type such as `Float64` or `UInt8`. */
   std::vector<double> numbers_of(const std::string &bytes,

@@ -235,6 +235,7 @@ namespace nsfd::vtk
         try {
           if (format == "ascii" || format.empty())
             return numbers_of_text(array.text, attribute("type"));
+          const std::string type = attribute("type");
           std::string text = array.text, bytes;
           if (format == "appended") {
             if (file_.appended_at == 0)
@@ -244,20 +245,19 @@ namespace nsfd::vtk
             std::from_chars(offset.data(), offset.data() + offset.size(), at);
             if (at > text_.size() - file_.appended_at)
               throw BadBytes("it ends early");
-            bytes =
-                bytes_of(text_, file_.appended_at + at,
-                         file_.appended_is_base64, file_.encoding, allowance_);
+            bytes = bytes_of(text_, file_.appended_at + at,
+                             file_.appended_is_base64, type, file_.encoding,
+                             allowance_);
           } else if (format == "binary") {
             text.erase(std::remove_if(text.begin(), text.end(),
                                       [](const unsigned char c) {
                                         return std::isspace(c);
                                       }),
                        text.end());
-            bytes = bytes_of(text, 0, true, file_.encoding, allowance_);
+            bytes = bytes_of(text, 0, true, type, file_.encoding, allowance_);
           } else
             throw BadBytes(fmt::format("its format `{}` is not known", format));
-          return numbers_of(bytes, attribute("type"),
-                            file_.encoding.is_big_endian);
+          return numbers_of(bytes, type, file_.encoding.is_big_endian);
         } catch (const BadBytes &bad) {
           throw BadBytes(
               fmt::format("the array `{}`: {}", array.name(), bad.what()));

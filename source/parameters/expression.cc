@@ -39,21 +39,25 @@ namespace nsfd
   /**
    * In one cell it is the value of the formula there. Where cells meet, as on a
    * face, it is the mean of their values; a condition holds if it holds in all
-   * of them. Not a number outside of the mesh.
+   * of them. Not a number outside of the mesh, nor a condition where one of
+   * its data is none: it would be false without a word.
    */
   double Expression::Compiled::of_cells() const
   {
     fields.source->find(x, y, z, cells);
     double sum = 0.;
-    bool holds = true;
+    bool holds = true, is_known = !cells.empty();
     for (const std::size_t cell : cells) {
-      for (std::size_t k = 0; k < fields.used.size(); ++k)
+      for (std::size_t k = 0; k < fields.used.size(); ++k) {
         cell_values[k] = fields.source->value(fields.used[k], cell);
+        if (fields.is_condition && std::isnan(cell_values[k]))
+          is_known = false;
+      }
       const double value = parser->Eval();
       sum += value;
       holds = holds && value != 0.;
     }
-    if (cells.empty())
+    if (!is_known)
       return std::numeric_limits<double>::quiet_NaN();
     return fields.is_condition ? double(holds) : sum / double(cells.size());
   }

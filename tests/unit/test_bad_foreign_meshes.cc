@@ -3,6 +3,8 @@
 
 #include "foreign_meshes.h"
 
+#include <zlib.h>
+
 #include <string>
 #include <vector>
 
@@ -154,6 +156,40 @@ namespace test_bad_foreign_meshes
     for (const char *content :
          {"", "<a>", "<VTKFile type=\"UnstructuredGrid\"/>"})
       EXPECT_NE(errors_of_content(2, "short.vtu", content), "") << content;
+  }
+
+  // Nine million zeros in nine kilobytes, which would be 72 MB of numbers.
+  TEST(BadForeignMeshes, WhatIsPackedIsNotUnpackedWithoutBound)
+  {
+    const std::string zeros(9000000, '\0');
+    uLongf n_packed = compressBound(zeros.size());
+    std::string packed(n_packed, '\0');
+    ASSERT_EQ(compress(reinterpret_cast<Bytef *>(&packed[0]), &n_packed,
+                       reinterpret_cast<const Bytef *>(zeros.data()),
+                       zeros.size()),
+              Z_OK);
+    packed.resize(n_packed);
+    std::string header;
+    for (const std::size_t word :
+         {std::size_t(1), zeros.size(), std::size_t(0), packed.size()})
+      for (unsigned int byte = 0; byte < 4; ++byte)
+        header += char(word >> (8 * byte) & 0xff);
+    const auto file = [&](const std::string &type) {
+      return "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\" "
+             "compressor=\"vtkZLibDataCompressor\"><UnstructuredGrid><Piece "
+             "NumberOfPoints=\"0\" NumberOfCells=\"1\"><Cells><DataArray "
+             "type=\"" +
+             type +
+             "\" Name=\"types\" format=\"appended\" offset=\"0\"/></Cells>"
+             "</Piece></UnstructuredGrid><AppendedData encoding=\"raw\">_" +
+             header + packed;
+    };
+    expect_part(errors_of_content(2, "bomb.vtu", file("UInt8")),
+                "the array `types`: unpacked, the file is more than 200 times "
+                "as large");
+    // as doubles they are allowed, and too many
+    expect_part(errors_of_content(2, "no_bomb.vtu", file("Float64")),
+                "have 1125000 and 0 values for 1 cells");
   }
 
   TEST(BadForeignMeshes, TagsInTagsAreNoRecursion)

@@ -4,6 +4,7 @@
 
 #include "mesh/cell_fields.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -68,6 +69,38 @@ namespace test_cell_data
     // at a corner of the plate, and outside
     EXPECT_NEAR(velocity(0., 0., 0.), 1.5, tolerance);
     EXPECT_TRUE(std::isnan(velocity(2.1, .5, 0.)));
+  }
+
+  // Of Gmsh, for the first twenty triangles of 86 only.
+  TEST(CellData, CellsWithoutThemAreNamed)
+  {
+    std::string text = content_of_test("plate_22_ascii.msh");
+    text += "$ElementData\n1\n\"yield share\"\n1\n0\n3\n0\n1\n20\n";
+    for (unsigned int k = 0; k < 20; ++k)
+      text += std::to_string(15 + k) + " 1.5\n"; // behind 14 curves
+    text += "$EndElementData\n";
+    const TemporaryFile file("some.msh", text);
+    const BuiltMesh<2> mesh(mesh_scene(2, file.entries()));
+    ASSERT_TRUE(mesh.input);
+    const auto &values = mesh.named().fields.at("yield_share");
+    ASSERT_EQ(values.size(), 86u);
+    EXPECT_EQ(std::count(values.begin(), values.end(), 1.5), 20);
+    EXPECT_EQ(std::count_if(values.begin(), values.end(),
+                            [](const double v) { return std::isnan(v); }),
+              66);
+    // a condition is no condition there, instead of false
+    const BuiltMesh<2> block(mesh_scene(
+        2, file.entries(), material("  set where = yield_share > 1\n")));
+    ASSERT_TRUE(block.input);
+    const Expression &where = block.input->materials[1].where.condition;
+    unsigned int n_true = 0, n_unknown = 0;
+    for (const auto &cell : block.triangulation->active_cell_iterators()) {
+      const double value = where.at(cell->center());
+      n_true += value == 1.;
+      n_unknown += std::isnan(value);
+    }
+    EXPECT_EQ(n_true, 20u);
+    EXPECT_EQ(n_unknown, 66u);
   }
 
   TEST(CellData, MaterialsAreGradedByThem)
