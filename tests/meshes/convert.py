@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""Writes the files of tests/meshes that meshio and VTK make of others.
+"""Writes the files of tests/meshes that meshio, VTK and netCDF make.
 
 Debian's python3-meshio (5.0.0), python3-vtk9 (9.1.0) and python3-netcdf4; run it
 in tests/meshes.
 """
 import meshio
+import netCDF4
 import numpy
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk
@@ -103,3 +104,60 @@ writer.WriteOutBlockIdArrayOff()
 writer.WriteOutGlobalNodeIdArrayOff()
 writer.WriteOutGlobalElementIdArrayOff()
 writer.Write()
+
+
+def write_exodus(name, layout):
+    """A hex, a tetrahedron and a prism apart, in the layout of SEACAS's library.
+
+    All of their sides are the side set `outside`, and the variable `damage` has
+    two times.
+    """
+    cube = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0),
+            (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    tetrahedron = [(2, 0, 0), (3, 0, 0), (2, 1, 0), (2, 0, 1)]
+    prism = [(4, 0, 0), (5, 0, 0), (4, 1, 0), (4, 0, 1), (5, 0, 1), (4, 1, 1)]
+    nodes = numpy.array(cube + tetrahedron + prism, dtype=float)
+    blocks = [("HEX8", "cube", range(0, 8), 6),
+              ("TETRA", "pyramid of three", range(8, 12), 4),
+              ("WEDGE6", "", range(12, 18), 5)]
+    with netCDF4.Dataset(name, "w", format=layout) as file:
+        for key, length in [("len_string", 33), ("len_name", 33),
+                            ("time_step", None), ("num_dim", 3),
+                            ("num_nodes", len(nodes)), ("num_elem", 3),
+                            ("num_el_blk", 3), ("num_side_sets", 1),
+                            ("num_side_ss1", 15), ("num_elem_var", 1)]:
+            file.createDimension(key, length)
+
+        def texts(variable, dimension, words):
+            values = numpy.zeros((len(words), 33), dtype="S1")
+            for row, word in zip(values, words):
+                row[:len(word)] = list(word)
+            file.createVariable(variable, "S1", (dimension, "len_name"))[:] = values
+
+        file.createVariable("time_whole", "f8", ("time_step",))[:] = [0.0, 1.0]
+        for d, axis in enumerate("xyz"):
+            file.createVariable("coord" + axis, "f8", ("num_nodes",))[:] = nodes[:, d]
+        file.createVariable("eb_prop1", "i4", ("num_el_blk",))[:] = [10, 20, 30]
+        texts("eb_names", "num_el_blk", [block[1] for block in blocks])
+        file.createVariable("ss_prop1", "i4", ("num_side_sets",))[:] = [7]
+        texts("ss_names", "num_side_sets", ["outside"])
+        texts("name_elem_var", "num_elem_var", ["damage"])
+        elements, sides = [], []
+        for k, (kind, _, corners, n_sides) in enumerate(blocks, 1):
+            file.createDimension(f"num_el_in_blk{k}", 1)
+            file.createDimension(f"num_nod_per_el{k}", len(corners))
+            connect = file.createVariable(
+                f"connect{k}", "i4", (f"num_el_in_blk{k}", f"num_nod_per_el{k}"))
+            connect.elem_type = kind
+            connect[:] = [[corner + 1 for corner in corners]]
+            damage = file.createVariable(
+                f"vals_elem_var1eb{k}", "f8", ("time_step", f"num_el_in_blk{k}"))
+            damage[:] = [[-1.0], [0.25 * k]]
+            elements += [k] * n_sides
+            sides += range(1, n_sides + 1)
+        file.createVariable("elem_ss1", "i4", ("num_side_ss1",))[:] = elements
+        file.createVariable("side_ss1", "i4", ("num_side_ss1",))[:] = sides
+
+
+write_exodus("block_sides.e", "NETCDF3_CLASSIC")
+write_exodus("block_sides_cdf5.exo", "NETCDF3_64BIT_DATA")

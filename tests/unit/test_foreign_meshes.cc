@@ -176,6 +176,27 @@ namespace test_foreign_meshes
     EXPECT_NEAR(block.boundary_area("lid"), 1., tolerance);
   }
 
+  // Sides are faces of their cells: none is left out, and none is twice.
+  TEST(ForeignMeshes, ExodusSidesOfAllShapes)
+  {
+    const double area =
+        6. + (1.5 + std::sqrt(3.) / 2.) + (1. + 2. + std::sqrt(2.));
+    for (const char *name : {"block_sides.e", "block_sides_cdf5.exo"}) {
+      const BuiltMesh<3> bodies(
+          mesh_scene(3, mesh_of_tests(name, "set split simplices = true")));
+      ASSERT_TRUE(bodies.triangulation) << name;
+      EXPECT_NEAR(bodies.volume("cube"), 1., tolerance) << name;
+      EXPECT_NEAR(bodies.volume("20"), 1. / 6., tolerance) << name;
+      EXPECT_NEAR(bodies.volume("30"), .5, tolerance) << name;
+      EXPECT_NEAR(bodies.boundary_area("all"), area, tolerance) << name;
+      EXPECT_NEAR(bodies.boundary_area("outside"), area, tolerance) << name;
+      EXPECT_TRUE(bodies.named().notes.empty()) << bodies.named().notes[0];
+      // at the last of two times
+      const std::vector<double> damage = {.25, .5, .75};
+      EXPECT_EQ(bodies.named().fields.at("damage"), damage) << name;
+    }
+  }
+
   TEST(ForeignMeshes, NeperInThePlane)
   {
     const BuiltMesh<2> grains(mesh_scene(2, mesh_of_tests("grains_neper.msh")));
