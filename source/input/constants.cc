@@ -53,7 +53,8 @@ namespace nsfd
             "keep those that are used");
       const auto value = reader.raw(entry.name, "", "", "3 um");
       // after an error, a number that fits everywhere: no further errors
-      Constant constant{1., units::none, true};
+      Constant constant;
+      constant.value = 1.;
       if (value) {
         // any unit will do here, so ask for the one that it has
         Formula formula = compile_formula(value->text(), units::none,
@@ -67,12 +68,13 @@ namespace nsfd
               fmt::format("{} = {}: {}", entry.name, value->text(),
                           formula.error->message),
               formula.error->advice);
-        else
-          constant = {
-              *formula.constant,
-              formula.unit.value_or(formula.likely_unit.value_or(units::none)),
-              !formula.unit && !formula.likely_unit,
-              formula.likely_unit.has_value()};
+        else {
+          constant.value = *formula.constant;
+          constant.unit =
+              formula.unit.value_or(formula.likely_unit.value_or(units::none));
+          constant.bare = !formula.unit && !formula.likely_unit;
+          constant.mixed = formula.likely_unit.has_value();
+        }
       }
       file.constants()[entry.name] = constant;
     }

@@ -1,6 +1,8 @@
+#include "mesh/cell_fields.h"
 #include "mesh/named_mesh.h"
 #include "mesh/nearest_grains.h"
 #include "nsfd/mesh/mesh_type.h"
+#include "parameters/parameter_file.h"
 #include "read_sections.h"
 
 #include <fmt/format.h>
@@ -201,10 +203,37 @@ namespace nsfd
                                  : scene.mesh);
   }
 
+  namespace
+  {
+    /** From here on formulas know the cell data of the mesh by their names. */
+    void name_cell_data(SectionReader &reader, const MeshInput &mesh,
+                        Constants &names)
+    {
+      if (!mesh.named || mesh.named->fields.empty())
+        return;
+      Constant data;
+      data.fields = std::make_shared<CellFields>(mesh.named);
+      if (mesh.distortion > 0.)
+        data.refusal = "cell data belong to cells as the file has them, and "
+                       "`distortion` moves their corners";
+      for (const auto &[name, values] : mesh.named->fields) {
+        if (!names.emplace(name, data).second)
+          reader.warning("file",
+                         fmt::format("formulas take `{}` for the entry of "
+                                     "section Constants, not for the cell data "
+                                     "of the mesh",
+                                     name),
+                         "give the constant another name to use the data");
+        ++data.field;
+      }
+    }
+  } // namespace
+
   void read_mesh(ParameterFile &file, InputErrors &errors, SceneInput &scene)
   {
     SectionReader reader(file.open("Mesh"), errors);
     scene.mesh = read_one_mesh(reader, scene.dimension, false);
+    name_cell_data(reader, scene.mesh, file.constants());
 
     const std::vector<ParameterSection *> blocks = file.open_blocks("Body");
     if (scene.mesh.type == "bodies" && blocks.empty())

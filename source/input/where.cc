@@ -201,6 +201,11 @@ namespace nsfd
         known.push_back(between);
       for (const std::string &body : body_names(scene))
         known.push_back(body);
+      if (scene.mesh.named && scene.mesh.named->fields.count(value) != 0)
+        return reader.error(
+            "where",
+            fmt::format("where = {}: these are cell data, no group", value),
+            fmt::format("write a condition, for example: {} == 1", value));
       std::string groups;
       if (scene.mesh.named)
         for (const NamedMesh::Group &group : scene.mesh.named->groups) {

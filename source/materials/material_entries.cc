@@ -35,6 +35,16 @@ namespace nsfd::materials
       return false;
     }
 
+    /** Data of the cells of a mesh are functions of the place, too. */
+    bool names_cell_data(SectionReader &reader, const SourceText &text,
+                         const Unit unit)
+    {
+      const InputErrors before = reader.errors();
+      const Expression value = reader.expression_in(text, "", unit);
+      reader.errors() = before; // whoever reads it in the end reports
+      return value.depends_on_position();
+    }
+
     /** In @p range; an expression, checked in the cells, unless @p uniform. */
     Expression read_constant(SectionReader &reader, const std::string &uniform,
                              const std::string &name, const Unit unit,
@@ -45,7 +55,7 @@ namespace nsfd::materials
       const auto given = reader.raw(name, "", text, example(unit));
       if (!given)
         return Expression(std::numeric_limits<double>::quiet_NaN());
-      if (!depends(given->text()))
+      if (!depends(given->text()) && !names_cell_data(reader, *given, unit))
         return reader.number_in(*given, name, "", unit, range);
       const unsigned int n_before = reader.errors().n_errors();
       Expression value = read_initial_expression(reader, name, "", unit, text);

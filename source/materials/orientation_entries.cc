@@ -199,8 +199,8 @@ namespace nsfd::materials
       const std::string name = entries[5];
       orientation.source = reader.word(
           name, "orientation",
-          "name of the $ElementData of the mesh file: three values per "
-          "cell, phi1, Phi, phi2 in degrees");
+          "name of the cell data of the mesh file: three values per cell, "
+          "phi1, Phi, phi2 in degrees");
       static const GrainTable none;
       const auto &all =
           (setting.grains != nullptr ? *setting.grains : none).cell_data;
@@ -219,8 +219,10 @@ namespace nsfd::materials
               : fmt::format("the mesh has no data of cells `{}` with three "
                             "values; it has {}",
                             orientation.source, fmt::join(names, ", ")),
-          "Gmsh writes them as $ElementData of three components into a .msh "
-          "file");
+          "Gmsh writes them as $ElementData of three components, VTK as an "
+          "array of cells, Neper as $ElsetOrientations; three data of one "
+          "value "
+          "each go into formulas: Euler angles = phi1, Phi, phi2");
     }
   } // namespace
 

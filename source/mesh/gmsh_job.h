@@ -11,9 +11,9 @@
 
 namespace nsfd
 {
-  /** What a process that runs Gmsh has to do; it knows nothing else. */
+  /** What a process that runs Gmsh or HDF5 has to do; it knows nothing else. */
   struct GmshJob {
-    enum class Kind { file, regions };
+    enum class Kind { file, regions, exodus };
     Kind kind = Kind::file;
     std::string folder; ///< of its own; `request.file` is in it
     GmshRequest request;
@@ -64,7 +64,7 @@ namespace nsfd
   void serialize(Archive &archive, NamedMesh &mesh, unsigned int)
   {
     archive &mesh.dimension &mesh.coordinates &mesh.cells &mesh.faces &mesh
-        .groups &mesh.sets &mesh.element_data &mesh.notes;
+        .groups &mesh.sets &mesh.element_data &mesh.fields &mesh.notes;
   }
 
   template <typename Archive>

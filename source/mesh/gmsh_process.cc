@@ -1,6 +1,7 @@
 #include "gmsh_process.h"
 
 #include "core/lock_process.h"
+#include "exodus_reader.h"
 #include "gmsh_job.h"
 
 #include <boost/archive/binary_iarchive.hpp>
@@ -217,8 +218,18 @@ namespace nsfd
           });
     }
 
+    /** What works in the other process. */
+    const char *library(const GmshJob &job)
+    {
+      return job.kind == GmshJob::Kind::exodus ? "HDF5" : "Gmsh";
+    }
+
     std::string took_too_long(const GmshJob &job)
     {
+      if (job.kind == GmshJob::Kind::exodus)
+        return fmt::format("HDF5 took more than {:g} s; write a larger "
+                           "`meshing time` if it needs more",
+                           job.request.seconds);
       return fmt::format("Gmsh took more than {:g} s; write a larger `meshing "
                          "time` if it needs more, or a larger `element size`",
                          job.request.seconds);
@@ -226,6 +237,11 @@ namespace nsfd
 
     std::string needs_memory(const GmshJob &job)
     {
+      if (job.kind == GmshJob::Kind::exodus)
+        return fmt::format("it needs more than {:.1f} GiB of memory; write a "
+                           "larger `meshing time`, with which the memory "
+                           "grows that it may take",
+                           job.memory * 0x1p-30);
       return fmt::format("Gmsh needs more than {:.1f} GiB of memory; write a "
                          "larger `element size`, or a larger `meshing time`, "
                          "with which the memory grows that it may take",
@@ -245,9 +261,9 @@ namespace nsfd
       if (1024. * double(outcome.used.ru_maxrss) > .8 * job.memory)
         return needs_memory(job);
       if (signal != 0)
-        return fmt::format("Gmsh crashed on it (signal {}, {})", signal,
-                           strsignal(signal));
-      return fmt::format("Gmsh ended without a mesh (exit code {})",
+        return fmt::format("{} crashed on it (signal {}, {})", library(job),
+                           signal, strsignal(signal));
+      return fmt::format("{} ended without a mesh (exit code {})", library(job),
                          WEXITSTATUS(outcome.status));
     }
 
@@ -289,22 +305,38 @@ namespace nsfd
     }
   } // namespace
 
+  namespace
+  {
+    NamedMesh read_file(const GmshJob::Kind kind, const GmshRequest &request,
+                        std::vector<std::string> &problems)
+    {
+      const PrivateFolder folder;
+      GmshJob job;
+      job.kind = kind;
+      job.folder = folder.path();
+      job.request = request;
+      // under a name that tells Gmsh what it is, with nothing beside it
+      job.request.file = "mesh" + request.extension;
+      fs::create_symlink(fs::absolute(request.file),
+                         fs::path(folder.path()) / job.request.file);
+      // text of a mesh is read at 5 to 10 MB/s
+      constexpr double bytes_per_second = 1e6;
+      job.request.seconds +=
+          double(fs::file_size(request.file)) / bytes_per_second;
+      return mesh_of(job, problems);
+    }
+  } // namespace
+
   NamedMesh read_gmsh(const GmshRequest &request,
                       std::vector<std::string> &problems)
   {
-    const PrivateFolder folder;
-    GmshJob job;
-    job.folder = folder.path();
-    job.request = request;
-    // under a name that tells Gmsh what it is, with nothing beside it
-    job.request.file = "mesh" + request.extension;
-    fs::create_symlink(fs::absolute(request.file),
-                       fs::path(folder.path()) / job.request.file);
-    // text of a mesh is read at 5 to 10 MB/s
-    constexpr double bytes_per_second = 1e6;
-    job.request.seconds +=
-        double(fs::file_size(request.file)) / bytes_per_second;
-    return mesh_of(job, problems);
+    return read_file(GmshJob::Kind::file, request, problems);
+  }
+
+  NamedMesh read_exodus(const GmshRequest &request,
+                        std::vector<std::string> &problems)
+  {
+    return read_file(GmshJob::Kind::exodus, request, problems);
   }
 
   NamedMesh read_gmsh(const GmshRequest &request, const GmshScript &script,
@@ -356,9 +388,12 @@ namespace nsfd
       lock_process({job.request.seconds, job.memory});
       GmshResult result;
       result.mesh =
-          job.kind == GmshJob::Kind::file
-              ? read_gmsh_here(job.request, result.problems)
-              : mesh_regions_here(job.regions, job.request, result.problems);
+          job.kind == GmshJob::Kind::regions
+              ? mesh_regions_here(job.regions, job.request, result.problems)
+          : job.kind == GmshJob::Kind::exodus
+              ? read_exodus_here(job.request.file, job.request.dimension,
+                                 result.problems)
+              : read_gmsh_here(job.request, result.problems);
       // an answer that nobody reads is no failure
       send_all(line_of_child, to_bytes(result));
       // no destructors of Gmsh, MPI or Kokkos: nothing is left to be done

@@ -1,12 +1,15 @@
 #include "gmsh_job.h"
 
 #include "gmsh_session.h"
+#include "neper_sections.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 #include <limits>
 #include <map>
+#include <unordered_map>
 
 namespace nsfd
 {
@@ -55,7 +58,19 @@ namespace nsfd
         return std::move(mesh_);
       }
 
+      /** The vertex of a node; one that is not there if there is no node. */
+      unsigned int vertex_of(const std::size_t tag) const
+      {
+        if (!number_.empty())
+          return tag < number_.size() ? number_[tag] : no_vertex;
+        const auto found = sparse_number_.find(tag);
+        return found == sparse_number_.end() ? no_vertex : found->second;
+      }
+
     private:
+      static constexpr unsigned int no_vertex =
+          std::numeric_limits<unsigned int>::max();
+
       void collect_nodes()
       {
         std::vector<std::size_t> tags;
@@ -65,7 +80,7 @@ namespace nsfd
         for (const std::size_t tag : tags)
           largest = std::max(largest, tag);
         if (largest < 4 * tags.size() + 1000) {
-          number_.assign(largest + 1, 0);
+          number_.assign(largest + 1, no_vertex);
           for (std::size_t i = 0; i < tags.size(); ++i)
             number_[tags[i]] = unsigned(i);
         } else
@@ -184,7 +199,26 @@ namespace nsfd
       std::size_t n_higher_order_ = 0, n_left_out_ = 0;
     };
 
-    /** $ElementData of three components, by its name. */
+    /** A number per cell, not a number where the file has none. */
+    std::vector<double> by_cell(const NamedMesh &mesh,
+                                const std::vector<std::size_t> &tags,
+                                const std::vector<std::vector<double>> &data)
+    {
+      std::unordered_map<std::size_t, double> of_tag;
+      for (std::size_t k = 0; k < tags.size(); ++k)
+        if (!data[k].empty())
+          of_tag[tags[k]] = data[k][0];
+      std::vector<double> values;
+      for (const std::size_t number : mesh.cells.numbers) {
+        const auto found = of_tag.find(number);
+        values.push_back(found != of_tag.end()
+                             ? found->second
+                             : std::numeric_limits<double>::quiet_NaN());
+      }
+      return values;
+    }
+
+    /** $ElementData of one component or three, by its name. */
     void collect_data(NamedMesh &mesh)
     {
       std::vector<int> views;
@@ -198,7 +232,11 @@ namespace nsfd
         gmsh::view::getModelData(view, 0, kind, tags, data, time, n_components);
         gmsh::option::getString(
             fmt::format("View[{}].Name", gmsh::view::getIndex(view)), name);
-        if (kind != "ElementData" || n_components != 3)
+        if (kind != "ElementData")
+          continue;
+        if (n_components == 1)
+          add_field(mesh, name, by_cell(mesh, tags, data));
+        if (n_components != 3)
           continue;
         auto &values = mesh.element_data[name];
         for (std::size_t k = 0; k < tags.size(); ++k)
@@ -305,6 +343,23 @@ namespace nsfd
     }
   } // namespace
 
+  namespace
+  {
+    /** What a file says besides cells and groups. */
+    void add_data(const GmshRequest &request, const Collector &collector,
+                  NamedMesh &mesh, std::vector<std::string> &problems)
+    {
+      collect_data(mesh);
+      if (request.extension != ".msh" || !problems.empty())
+        return;
+      std::ifstream in(request.file, std::ios::binary);
+      add_neper_sections(
+          in, mesh,
+          [&](const std::size_t node) { return collector.vertex_of(node); },
+          problems);
+    }
+  } // namespace
+
   NamedMesh read_gmsh_here(const GmshRequest &request,
                            std::vector<std::string> &problems)
   {
@@ -318,11 +373,12 @@ namespace nsfd
     NamedMesh mesh;
     const bool done = session.run([&] {
       if (has_dimension(request, problems) &&
-          (!request.is_geometry || make_cells(session, request, problems)))
-        mesh =
-            Collector(request.dimension, request.is_geometry).collect(problems);
-      if (!request.is_geometry)
-        collect_data(mesh);
+          (!request.is_geometry || make_cells(session, request, problems))) {
+        Collector collector(request.dimension, request.is_geometry);
+        mesh = collector.collect(problems);
+        if (!request.is_geometry)
+          add_data(request, collector, mesh, problems);
+      }
     });
     if (!done && problems.empty())
       problems.push_back(complaint("the file cannot be used", session));

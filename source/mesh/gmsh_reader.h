@@ -33,6 +33,13 @@ namespace nsfd
   NamedMesh read_gmsh(const GmshRequest &request,
                       std::vector<std::string> &problems);
 
+  /**
+   * An Exodus file, not yet in order: see read_exodus_here(). Those of HDF5 are
+   * read in a process of that kind as well.
+   */
+  NamedMesh read_exodus(const GmshRequest &request,
+                        std::vector<std::string> &problems);
+
   /** The same of a script that has passed the filter. */
   NamedMesh read_gmsh(const GmshRequest &request, const GmshScript &script,
                       std::vector<std::string> &problems);

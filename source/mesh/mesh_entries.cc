@@ -20,7 +20,7 @@ namespace nsfd
         {"gmsh", MeshFormat::gmsh_mesh}, {"geo", MeshFormat::gmsh_geometry},
         {"cad", MeshFormat::cad},        {"abaqus", MeshFormat::abaqus},
         {"ucd", MeshFormat::ucd},        {"vtk", MeshFormat::vtk},
-        {"vtu", MeshFormat::vtu}};
+        {"vtu", MeshFormat::vtu},        {"exodus", MeshFormat::exodus}};
 
     MeshFormat read_format(SectionReader &reader, const std::string &file,
                            const bool exists)
@@ -31,7 +31,7 @@ namespace nsfd
       const std::string name = reader.choice(
           "format", "auto", names,
           "auto (by the name of the file), gmsh, geo (script of Gmsh), cad "
-          "(STEP, IGES, BREP), abaqus, ucd, vtk, vtu");
+          "(STEP, IGES, BREP), abaqus, ucd, vtk, vtu, exodus");
       const auto found = formats.find(name);
       if (found != formats.end())
         return found->second;
@@ -107,7 +107,7 @@ namespace nsfd
     constexpr double one_day = 86400.;
     return reader.number("meshing time", "20", units::none,
                          {0., one_day, true, false},
-                         "s of CPU that Gmsh may take");
+                         "s of CPU that Gmsh or HDF5 may take");
   }
 
   bool read_file_entries(SectionReader &reader, MeshFileRequest &request)

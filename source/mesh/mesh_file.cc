@@ -52,6 +52,12 @@ namespace nsfd
         {".ucd", MeshFormat::ucd},
         {".vtk", MeshFormat::vtk},
         {".vtu", MeshFormat::vtu},
+        {".e", MeshFormat::exodus},
+        {".exo", MeshFormat::exodus},
+        {".exii", MeshFormat::exodus},
+        {".ex2", MeshFormat::exodus},
+        {".g", MeshFormat::exodus},
+        {".gen", MeshFormat::exodus},
         {".unv", MeshFormat::gmsh_mesh},
         {".mesh", MeshFormat::gmsh_mesh},
         {".bdf", MeshFormat::gmsh_mesh},
@@ -113,6 +119,8 @@ namespace nsfd
     case MeshFormat::vtk:
     case MeshFormat::vtu:
       return "VTK mesh";
+    case MeshFormat::exodus:
+      return "Exodus mesh";
     }
     return "";
   }
@@ -171,10 +179,11 @@ namespace nsfd
       mesh = read_ucd(request.file, request.dimension, problems);
       break;
     case MeshFormat::vtk:
-      mesh = read_vtk(request.file, request.dimension, problems);
-      break;
     case MeshFormat::vtu:
-      mesh = read_by_deal_ii(request.file, request.dimension, problems);
+      mesh = read_vtk(request, problems);
+      break;
+    case MeshFormat::exodus:
+      mesh = read_exodus(gmsh_request(request, unit), problems);
       break;
     default:
       mesh = read_by_gmsh(request, unit, problems);

@@ -15,7 +15,8 @@ namespace nsfd
     abaqus,
     ucd,
     vtk,
-    vtu
+    vtu,
+    exodus
   };
 
   /**
@@ -39,7 +40,8 @@ namespace nsfd
     enum class Shape { as_given, simplices, cubes };
     Shape shape = Shape::as_given;
     bool merge_vertices = false;
-    double seconds = 20.; ///< of CPU that Gmsh may take
+    std::string group_data; ///< VTK: cell data that number groups; may be empty
+    double seconds = 20.;   ///< of CPU that Gmsh may take
   };
 
   /** The mesh of a file, in order. Everything that is wrong is a sentence. */
@@ -47,8 +49,8 @@ namespace nsfd
                            std::vector<std::string> &problems);
 
   /**
-   * `*NODE`, `*ELEMENT`, `*ELSET`, `*SURFACE` of an Abaqus input deck: element
-   * sets and surfaces become groups. Not yet in order.
+   * Parts and instances of an Abaqus input deck, at their places. Sets of
+   * elements, surfaces and sets of nodes become groups. Not yet in order.
    */
   NamedMesh read_abaqus(const std::string &file, unsigned int dimension,
                         std::vector<std::string> &problems);
@@ -57,11 +59,10 @@ namespace nsfd
   NamedMesh read_ucd(const std::string &file, unsigned int dimension,
                      std::vector<std::string> &problems);
 
-  /** Legacy VTK, ASCII, not yet in order: groups are its `MaterialID`. */
-  NamedMesh read_vtk(const std::string &file, unsigned int dimension,
+  /**
+   * VTK's legacy and XML formats, not yet in order. Groups are whole numbers of
+   * cell data; all numbers of cell data are fields.
+   */
+  NamedMesh read_vtk(const MeshFileRequest &request,
                      std::vector<std::string> &problems);
-
-  /** VTU that deal.II has written, not yet in order: groups have numbers. */
-  NamedMesh read_by_deal_ii(const std::string &file, unsigned int dimension,
-                            std::vector<std::string> &problems);
 } // namespace nsfd

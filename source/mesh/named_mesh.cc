@@ -1,10 +1,13 @@
 #include "named_mesh.h"
 
 #include "cell_shapes.h"
+#include "parameters/formula.h"
+#include "parameters/quantity.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <limits>
 
 namespace nsfd
@@ -42,6 +45,30 @@ namespace nsfd
       return unsigned(sets.size() - 1);
     }
     return unsigned(found - sets.begin());
+  }
+
+  std::string field_name(const std::string &name_in_file)
+  {
+    std::string name;
+    for (const char c : name_in_file)
+      name += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+    const bool is_taken = name.empty() || is_formula_word(name) ||
+                          find_unit(name) ||
+                          std::isdigit(static_cast<unsigned char>(name[0]));
+    return is_taken ? "cell_" + name : name;
+  }
+
+  void add_field(NamedMesh &mesh, const std::string &name_in_file,
+                 std::vector<double> values)
+  {
+    const std::string name = field_name(name_in_file);
+    if (!mesh.fields.emplace(name, std::move(values)).second)
+      mesh.notes.push_back(fmt::format("the cell data `{}` are left out: there "
+                                       "are others that formulas know as `{}`",
+                                       name_in_file, name));
+    else if (name != name_in_file)
+      mesh.notes.push_back(fmt::format(
+          "the cell data `{}` are `{}` in formulas", name_in_file, name));
   }
 
   std::map<std::string, SetsOfNamedGroup> sets_of_groups(const NamedMesh &mesh)

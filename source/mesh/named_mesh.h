@@ -59,7 +59,10 @@ namespace nsfd
     /// of the cell in the file
     std::map<std::string, std::map<std::size_t, std::vector<double>>>
         element_data;
-    /// the same by name and set, after sort_by_data()
+    /// a number of each cell, in the order of `cells`, by a name that formulas
+    /// may use; not a number where the file has none
+    std::map<std::string, std::vector<double>> fields;
+    /// three values, by name and set, after sort_by_data()
     std::map<std::string, std::vector<std::array<double, 3>>> cell_data;
     /// what has been changed, and what is odd: a sentence each
     std::vector<std::string> notes;
@@ -68,6 +71,19 @@ namespace nsfd
     /** Index of the set of these groups, made if need be. */
     unsigned int set_of(std::vector<unsigned int> groups_of_element);
   };
+
+  /**
+   * The name by which formulas know a field: letters, digits and _. What means
+   * something in every formula, such as `t` or `mm`, gets `cell_` before it.
+   */
+  std::string field_name(const std::string &name_in_file);
+
+  /**
+   * A number of each cell under the name for formulas. A note says what it is
+   * called if that is another one, and which of two fields of one name is left.
+   */
+  void add_field(NamedMesh &mesh, const std::string &name_in_file,
+                 std::vector<double> values);
 
   /** By set; empty vectors if no element of this kind can belong to it. */
   struct SetsOfNamedGroup {

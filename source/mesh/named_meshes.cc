@@ -7,6 +7,7 @@
 
 #include "nsfd/parameters/section_reader.h"
 #include "parameters/input_errors.h"
+#include "parameters/parameter_file.h"
 
 #include <fmt/format.h>
 
@@ -48,6 +49,21 @@ namespace nsfd
                                  : Shape::as_given;
     }
 
+    std::string read_group_data(SectionReader &reader, const MeshFormat format)
+    {
+      const std::string name = "group data",
+                        text = "VTK: the cell data whose whole numbers are "
+                               "groups; without it those that programs use";
+      if (format != MeshFormat::vtk && format != MeshFormat::vtu) {
+        reader.refuse({name}, "only files of VTK number their groups by cell "
+                              "data");
+        return "";
+      }
+      return reader.optional(name, text)
+                 ? collapse_blanks(reader.word(name, "", text))
+                 : "";
+    }
+
     /** What degree and law of the other sections rely on. */
     void check_shapes(SectionReader &reader, const NamedMesh &named,
                       const bool split)
@@ -77,6 +93,7 @@ namespace nsfd
       request.element_size = read_element_size(reader, is_geometry);
       if (is_geometry)
         request.shape = read_shape(reader, dimension);
+      request.group_data = read_group_data(reader, request.format);
       request.seconds = read_meshing_time(reader);
       request.merge_vertices = reader.boolean(
           "merge vertices", false, "join vertices that are at one place");
@@ -235,7 +252,8 @@ namespace nsfd
     };
 
     NSFD_REGISTER(MeshTypeRegistry, FileMesh, "file",
-                  "a mesh or geometry file: Gmsh, STEP, Abaqus, UCD, VTK");
+                  "a mesh or geometry file: Gmsh, Neper, STEP, Abaqus, Exodus, "
+                  "UCD, VTK");
     NSFD_REGISTER(MeshTypeRegistry, VoronoiMesh, "voronoi",
                   "quadrilaterals in the grains of a polycrystal");
   } // namespace

@@ -74,6 +74,14 @@ namespace nsfd
       return result;
     }
 
+    void select_values(std::vector<double> &values,
+                       const std::vector<std::size_t> &kept)
+    {
+      for (std::size_t i = 0; i < kept.size(); ++i)
+        values[i] = values[kept[i]]; // kept is sorted
+      values.resize(kept.size());
+    }
+
     /**
      * Formats that know one group per element store one of two groups twice.
      * Returns how many copies there were. A cell that is twice in the same
@@ -107,6 +115,9 @@ namespace nsfd
       if (n_copies > 0) {
         std::sort(kept.begin(), kept.end());
         elements = select(elements, kept);
+        if (&elements == &mesh.cells)
+          for (auto &[name, values] : mesh.fields)
+            select_values(values, kept);
       }
       return n_copies;
     }
@@ -421,7 +432,11 @@ namespace nsfd
                     std::vector<std::string> &problems)
   {
     if (mesh.cells.size() == 0) {
-      problems.push_back("the mesh has no cell");
+      problems.push_back(
+          mesh.dimension == 3 && mesh.faces.size() > 0
+              ? "it is a mesh of 2 dimensions, the scene has 3; write `set "
+                "dimension = 2` at the top, or bring another file"
+              : "the mesh has no cell");
       return;
     }
     // 5 mm are exactly the double 5e-3

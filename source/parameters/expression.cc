@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 namespace nsfd
@@ -28,7 +29,38 @@ namespace nsfd
     Function function;                          ///< empty: not one either
     mutable std::string name; ///< empty: no formula of the input
     mutable double x = 0., y = 0., z = 0., t = 0.;
+    FormulaFields fields; ///< cell data of the place
+    mutable std::vector<double> cell_values;
+    mutable std::vector<std::size_t> cells;
+
+    double of_cells() const;
   };
+
+  /**
+   * In one cell it is the value of the formula there. Where cells meet, as on a
+   * face, it is the mean of their values; a condition holds if it holds in all
+   * of them. Not a number outside of the mesh, nor a condition where one of
+   * its data is none: it would be false without a word.
+   */
+  double Expression::Compiled::of_cells() const
+  {
+    fields.source->find(x, y, z, cells);
+    double sum = 0.;
+    bool holds = true, is_known = !cells.empty();
+    for (const std::size_t cell : cells) {
+      for (std::size_t k = 0; k < fields.used.size(); ++k) {
+        cell_values[k] = fields.source->value(fields.used[k], cell);
+        if (fields.is_condition && std::isnan(cell_values[k]))
+          is_known = false;
+      }
+      const double value = parser->Eval();
+      sum += value;
+      holds = holds && value != 0.;
+    }
+    if (!is_known)
+      return std::numeric_limits<double>::quiet_NaN();
+    return fields.is_condition ? double(holds) : sum / double(cells.size());
+  }
 
   namespace
   {
@@ -122,7 +154,8 @@ namespace nsfd
 
   std::shared_ptr<const Expression::Compiled>
   compile_translated(const std::string &translated, const std::string &text,
-                     const bool depends_on_time, const bool depends_on_position)
+                     const bool depends_on_time, const bool depends_on_position,
+                     const FormulaFields &fields)
   {
     auto compiled = std::make_shared<Expression::Compiled>();
     compiled->text = text;
@@ -135,6 +168,11 @@ namespace nsfd
     parser.DefineVar("y", &compiled->y);
     parser.DefineVar("z", &compiled->z);
     parser.DefineVar("t", &compiled->t);
+    compiled->fields = fields;
+    compiled->cell_values.assign(fields.used.size(), 0.4);
+    for (std::size_t k = 0; k < fields.used.size(); ++k)
+      parser.DefineVar(fmt::format("cell_value_{}", k),
+                       &compiled->cell_values[k]);
     // constants are folded already; the other rewrites gain little
     parser.EnableOptimizer(false);
     parser.SetExpr(translated);
@@ -181,7 +219,8 @@ namespace nsfd
     compiled_->y = y;
     compiled_->z = z;
     compiled_->t = t;
-    const double value = compiled_->parser->Eval();
+    const double value = compiled_->fields.source ? compiled_->of_cells()
+                                                  : compiled_->parser->Eval();
     if (!std::isfinite(value) && !compiled_->name.empty())
       note_bad_value(*compiled_, value, {{x, y, z, t}});
     return value;

@@ -45,8 +45,9 @@ namespace nsfd
       } else if (part.dimension.certainty == formula::Certainty::natural)
         result.likely_unit = part.dimension.unit;
       result.depends_on_time = parser.uses_time();
-      result.compiled = compile_translated(
-          part.translated, text, parser.uses_time(), parser.uses_position());
+      result.compiled =
+          compile_translated(part.translated, text, parser.uses_time(),
+                             parser.uses_position(), parser.fields(part));
       if (!parser.uses_variables()) {
         const double value = evaluate_constant(*result.compiled);
         if (!std::isfinite(value))

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace nsfd
 {
@@ -13,6 +14,13 @@ namespace nsfd
   struct FormulaError {
     std::size_t offset = 0, length = 0;
     std::string message, advice;
+  };
+
+  /** Cell data that a formula names. */
+  struct FormulaFields {
+    std::shared_ptr<const PlaceFields> source; ///< null: it names none
+    std::vector<std::size_t> used; ///< `cell_value_0`, ... in what is compiled
+    bool is_condition = false;     ///< its value is true or false
   };
 
   /** A compiled formula, or the reason why there is none. */
@@ -32,9 +40,10 @@ namespace nsfd
    * Compile a formula: numbers with unit suffixes, + - * / ^, comparisons,
    * && || !, conditions `if(c, a, b)` or `c ? a : b`, the functions of
    * muParser, pi, true, false, constants, and x, y, z, t if
-   * @p with_variables. Dimensions are checked where they are known: numbers
-   * with a suffix have one, bare numbers fit everywhere, x, y, z and t may be
-   * bare too. The result is compared with @p expected. Never throws.
+   * @p with_variables, and then cell data of a mesh as well. Dimensions are
+   * checked where they are known: numbers with a suffix have one, bare numbers
+   * fit everywhere, x, y, z and t may be bare too. The result is compared with
+   * @p expected. Never throws.
    */
   Formula compile_formula(const std::string &text, const Unit &expected,
                           const Constants &constants, bool with_variables);
@@ -58,5 +67,6 @@ namespace nsfd
    */
   std::shared_ptr<const Expression::Compiled>
   compile_translated(const std::string &translated, const std::string &text,
-                     bool depends_on_time, bool depends_on_position);
+                     bool depends_on_time, bool depends_on_position,
+                     const FormulaFields &fields);
 } // namespace nsfd

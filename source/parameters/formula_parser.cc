@@ -32,7 +32,7 @@ namespace nsfd::formula
   {
     Part result = conjunction();
     while (accept("||"))
-      result = combine(result, "||", conjunction(), pure_number);
+      result = combine(result, "||", conjunction(), pure_number, true);
     return result;
   }
 
@@ -40,7 +40,7 @@ namespace nsfd::formula
   {
     Part result = comparison();
     while (accept("&&"))
-      result = combine(result, "&&", comparison(), pure_number);
+      result = combine(result, "&&", comparison(), pure_number, true);
     return result;
   }
 
@@ -64,7 +64,7 @@ namespace nsfd::formula
     if (!accept_comparison().empty())
       fail(second, at_, "comparisons cannot be chained",
            "write for example: 0 < x && x < 1");
-    return combine(left, operation, right, pure_number);
+    return combine(left, operation, right, pure_number, true);
   }
 
   Part Parser::sum()
@@ -106,14 +106,17 @@ namespace nsfd::formula
     const std::size_t begin = at_;
     if (text_.compare(at_, 2, "!=") != 0 && accept("!")) {
       const Part part = factor();
-      return {"(" + part.translated + "==0)", pure_number, begin, part.end};
+      return {"(" + part.translated + "==0)", pure_number, begin, part.end,
+              true};
     }
     unsigned int n_minus = 0;
     while (peek() == '-' || peek() == '+')
       n_minus += text_[at_++] == '-';
     Part part = factor();
-    if (n_minus % 2 == 1)
+    if (n_minus % 2 == 1) {
       part.translated = "(-" + part.translated + ")";
+      part.is_condition = false;
+    }
     part.begin = begin;
     return part;
   }
@@ -186,6 +189,8 @@ namespace nsfd::formula
     const auto constant = constants_.find(name);
     if (constant != constants_.end()) {
       const Constant &c = constant->second;
+      if (c.fields)
+        return cell_data(c, begin, end);
       return {fmt::format("({:.17g})", c.value),
               {c.bare    ? Certainty::unknown
                : c.mixed ? Certainty::natural
@@ -202,8 +207,8 @@ namespace nsfd::formula
     for (const auto &entry : constants_)
       known.push_back(entry.first);
     std::string otherwise =
-        with_variables_ ? "known are x, y, z, t, pi, functions and the entries "
-                          "of section Constants"
+        with_variables_ ? "known are x, y, z, t, pi, functions, the entries of "
+                          "section Constants and cell data of the mesh"
                         : "a number is expected, or an entry of section "
                           "Constants";
     if (name == "and" || name == "or" || name == "not")
@@ -213,6 +218,31 @@ namespace nsfd::formula
            "a unit stands after its number: 5 " + name + ", 2 1/s");
     fail(begin, end, fmt::format("`{}` is not known", name),
          did_you_mean(name, known, otherwise));
+  }
+
+  Part Parser::cell_data(const Constant &data, const std::size_t begin,
+                         const std::size_t end)
+  {
+    const std::string name = text_.substr(begin, end - begin);
+    if (!data.refusal.empty())
+      fail(begin, end, fmt::format("`{}`: {}", name, data.refusal));
+    if (!with_variables_)
+      fail(begin, end,
+           fmt::format("`{}` cannot stand here: a number is expected, and cell "
+                       "data differ from place to place",
+                       name),
+           "write a number, or constants and functions of them");
+    uses_variables_ = uses_position_ = true;
+    fields_.source = data.fields;
+    auto &used = fields_.used;
+    const auto found = std::find(used.begin(), used.end(), data.field);
+    const auto number = found - used.begin();
+    if (found == used.end())
+      used.push_back(data.field);
+    return {fmt::format("cell_value_{}", number),
+            {Certainty::unknown, units::none},
+            begin,
+            end};
   }
 
   Part Parser::call(const Function &function, const std::size_t begin)

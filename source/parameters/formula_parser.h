@@ -33,11 +33,19 @@ namespace nsfd::formula
     bool uses_variables() const { return uses_variables_; }
     bool uses_time() const { return uses_time_; }
     bool uses_position() const { return uses_position_; }
+    /** Cell data that occurred in the formula, whose whole is @p part. */
+    FormulaFields fields(const Part &part) const
+    {
+      FormulaFields result = fields_;
+      result.is_condition = part.is_condition;
+      return result;
+    }
 
   private:
     const bool with_variables_;
     unsigned int depth_ = 0;
     bool uses_variables_ = false, uses_time_ = false, uses_position_ = false;
+    FormulaFields fields_;
 
     /// brackets in brackets, conditions in conditions, powers of powers
     static constexpr unsigned int deepest = 200;
@@ -62,14 +70,16 @@ namespace nsfd::formula
     Part bracket();
     Part name();
     Part call(const Function &function, std::size_t begin);
+    Part cell_data(const Constant &data, std::size_t begin, std::size_t end);
 
     // --- combining
 
     Part combine(const Part &a, const std::string &operation, const Part &b,
-                 const Dimension &dimension) const
+                 const Dimension &dimension,
+                 const bool is_condition = false) const
     {
       return {"(" + a.translated + operation + b.translated + ")", dimension,
-              a.begin, b.end};
+              a.begin, b.end, is_condition};
     }
 
     void demand_alike(const Part &a, const Part &b,

@@ -15,6 +15,7 @@ namespace nsfd::formula
     std::string translated;
     Dimension dimension;
     std::size_t begin = 0, end = 0; ///< in the text of the user
+    bool is_condition = false;      ///< true or false
   };
 
   /**

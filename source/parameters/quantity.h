@@ -2,7 +2,10 @@
 
 #include "nsfd/parameters/section_reader.h"
 
+#include "place_fields.h"
+
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -51,7 +54,8 @@ namespace nsfd
   /** What a value of this kind looks like: "135 GPa". May be empty. */
   std::string example(const Unit &unit);
 
-  /** A named number of the section `Constants`. */
+  /** What a formula calls by a name: a number of the section `Constants`, or
+      cell data of the mesh. */
   struct Constant {
     double value = 0.;
     Unit unit;
@@ -59,6 +63,10 @@ namespace nsfd
     bool bare = true;
     /// a formula of numbers with and without: `unit` is that of the former
     bool mixed = false;
+    /// cell data: the place gives the number; `value` means nothing
+    std::shared_ptr<const PlaceFields> fields;
+    std::size_t field = 0; ///< of `fields`
+    std::string refusal;   ///< why it cannot be used here; empty if it can
   };
   using Constants = std::map<std::string, Constant>;
 } // namespace nsfd

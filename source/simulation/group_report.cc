@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace nsfd
 {
@@ -97,6 +99,21 @@ namespace nsfd
                                 group.n_elements, group.n_boundary);
     }
 
+    std::string describe_values(const std::string &name,
+                                const std::vector<double> &values)
+    {
+      double least = std::numeric_limits<double>::infinity(), most = -least;
+      std::size_t n_missing = 0;
+      for (const double value : values) {
+        n_missing += std::isnan(value);
+        least = std::fmin(least, value);
+        most = std::fmax(most, value);
+      }
+      return fmt::format(
+          "{} in formulas: {:g} to {:g}{}", name, least, most,
+          n_missing == 0 ? "" : fmt::format(", {} cells without", n_missing));
+    }
+
     void add_notes(const NamedMesh &mesh, std::vector<ReportLine> &lines)
     {
       for (const std::string &note : mesh.notes)
@@ -132,6 +149,8 @@ namespace nsfd
     if (n_unused > n_shown)
       lines.push_back({"group", fmt::format("and {} more that are not used",
                                             n_unused - n_shown)});
+    for (const auto &[name, values] : mesh.fields)
+      lines.push_back({"cell data", describe_values(name, values)});
     add_notes(mesh, lines);
     return lines;
   }

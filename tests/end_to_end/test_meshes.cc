@@ -184,6 +184,55 @@ namespace end_to_end::test_meshes
                                                            << outcome.out;
   }
 
+  // Grains of Neper by their groups, and by the numbers that the file gives
+  // them: the same scene, to the last bit.
+  TEST(Meshes, CellDataAreAsGoodAsGroups)
+  {
+    const auto scene = [](const std::string &first, const std::string &between,
+                          const std::string &others) {
+      const std::string law = "  set law       = camacho-ortiz\n"
+                              "  set strength  = 30 MPa\n"
+                              "  set toughness = 40 J/m^2\n";
+      return "# grains - pulled apart.\nsubsection Mesh\n  set type = file\n"
+             "  set file = " +
+             mesh_file("grains_neper.msh") +
+             "\n  set length unit = mm\nend\n"
+             "subsection Material: crystals\n  set model = cubic\n"
+             "  set C11 = 168 GPa\n  set C12 = 121 GPa\n  set C44 = 75 GPa\n"
+             "  set density = 8960\n  set orientation = cell data\nend\n"
+             "subsection Interface: first\n" +
+             law + first + "end\n" + between +
+             (between.empty() ? "" : law + "  set strength factor = 2\nend\n") +
+             "subsection Interface: others\n" + law + others +
+             "end\n"
+             "subsection Boundary: x0\n  set velocity x = -10 m/s\nend\n"
+             "subsection Boundary: periodic x1\n"
+             "  set velocity x = 10 m/s\nend\n"
+             "subsection Time\n  set scheme = explicit\n  set end = 0.4 us\n"
+             "  set step = auto\nend\n";
+    };
+    const Workspace workspace;
+    Launch launch;
+    launch.set = {"Output/fields=false"};
+    const Result by_group =
+        run_text(workspace, "groups",
+                 scene("  set where = face1\n  set strength factor = 0.5\n",
+                       "subsection Interface: between\n  set where = edge7\n",
+                       "  set strength factor = 3\n"),
+                 launch);
+    // group 1 in the first grain, 3 in the second, 2 between them
+    const std::string by_number =
+        scene("  set where = group == 1\n  set strength factor = group / 2\n",
+              "", "  set strength factor = group\n");
+    const Result by_data = run_text(workspace, "data", by_number, launch);
+    launch.ranks = 2;
+    const Result by_two = run_text(workspace, "two", by_number, launch);
+    ASSERT_TRUE(by_group.completed() && by_data.completed() &&
+                by_two.completed());
+    EXPECT_EQ(by_group.history_text, by_data.history_text);
+    EXPECT_EQ(by_data.history_text, by_two.history_text);
+  }
+
   TEST(Meshes, BadFilesStopBeforeTheFirstStep)
   {
     const Workspace workspace;

@@ -209,11 +209,14 @@ namespace nsfd::fuzz
                        {"mutant.prm", "--check", "--set", assignment});
       } else if (job.kind == "mesh") {
         const std::string extension = seed.extension().string();
-        const bool is_text =
-            seed.filename().string().find("binary") == std::string::npos;
+        const bool is_text = read_file(seed).find('\0') == std::string::npos;
+        const bool is_in_space =
+            seed.filename().string().compare(0, 5, "block") == 0;
         write_file(inner / ("mutant" + extension), mutate(is_text));
         write_file(inner / "mutant.prm",
-                   "subsection Mesh\n set type = file\n set file = mutant" +
+                   (is_in_space ? "set dimension = 3\n" : "") +
+                       std::string("subsection Mesh\n set type = file\n"
+                                   " set file = mutant") +
                        extension +
                        "\nend\nsubsection Material: m\n set Young modulus = 1\n"
                        " set Poisson ratio = 0.2\n set density = 1\nend\n"
