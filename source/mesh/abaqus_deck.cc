@@ -308,7 +308,8 @@ namespace nsfd::abaqus
             type,
             kind.dimension,
             {numbers.begin() + 1, numbers.begin() + 1 + corners},
-            line_number_};
+            line_number_,
+            corners + 1 < numbers.size()};
         if (!keyword_.get("ELSET").empty())
           add_member(here->element_sets, keyword_.get("ELSET"), numbers[0]);
       }

@@ -19,6 +19,7 @@ namespace nsfd::abaqus
     unsigned int dimension = 0;
     std::vector<long> corners; ///< labels of nodes, in Abaqus's order
     unsigned int line = 0;
+    bool is_curved = false; ///< has nodes besides its corners
   };
 
   /** A node or element: the instance it is of, and its label there. */

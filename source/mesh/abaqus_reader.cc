@@ -229,6 +229,7 @@ namespace nsfd
           const unsigned int set = entry->second;
           if (placed.element->dimension == mesh_.dimension) {
             mesh_.cells.add(corners, set, std::size_t(label));
+            n_curved_ += placed.element->is_curved;
             if (element_type(placed.element->type).is_structural)
               ++n_taken_[placed.element->type];
           } else
@@ -246,6 +247,11 @@ namespace nsfd
             notes.push_back(fmt::format("{} elements of the type {} were taken "
                                         "for plane cells of their corners",
                                         n, type));
+          if (n_curved_ > 0)
+            notes.push_back(fmt::format(
+                "{} cells are of higher order in the file: their corners are "
+                "used, their sides are straight",
+                n_curved_));
           if (n_missing_ > 0)
             notes.push_back(fmt::format("{} entries of sets and surfaces name "
                                         "nodes or elements that are not there",
@@ -276,7 +282,7 @@ namespace nsfd
         std::map<std::string, std::size_t> n_taken_; ///< shells as plane cells
         /// sets of groups that have been looked up
         std::map<std::vector<unsigned int>, unsigned int> set_of_;
-        std::size_t n_missing_ = 0;
+        std::size_t n_missing_ = 0, n_curved_ = 0;
       };
     } // namespace
   }   // namespace abaqus

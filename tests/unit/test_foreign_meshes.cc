@@ -141,6 +141,21 @@ namespace test_foreign_meshes
               false);
   }
 
+  // A line that ends with a comma goes on; middle nodes come after the corners.
+  TEST(ForeignMeshes, AbaqusElementsOfSecondOrder)
+  {
+    const TemporaryFile file("second.inp",
+                             "*Node\n1, 0., 0.\n2, 2., 0.\n3, 2., 2.\n"
+                             "4, 0., 2.\n5, 1., 0.\n6, 2., 1.\n7, 1., 2.\n"
+                             "8, 0., 1.\n*Element, type=CPE8R, elset=all-1\n"
+                             "1, 1, 2, 3, 4, 5,\n6, 7, 8\n");
+    const BuiltMesh<2> mesh(mesh_scene(2, file.entries()));
+    ASSERT_TRUE(mesh.triangulation);
+    EXPECT_NEAR(mesh.volume("all-1"), 4., tolerance);
+    ASSERT_EQ(mesh.named().notes.size(), 1u);
+    expect_part(mesh.named().notes[0], "1 cells are of higher order");
+  }
+
   TEST(ForeignMeshes, AbaqusInstancesHaveNamesOfTheirOwn)
   {
     std::string deck = content_of_test("plate_cae.inp");
