@@ -473,31 +473,6 @@ namespace nsfd
     take(old, time, q, next);
   }
 
-  /** The displacements @p q of the last round as the state after @p old. */
-  template <int dim>
-  void EquilibriumSearch<dim>::take(const State &old, const double time,
-                                    const std::vector<double> &q, State &next)
-  {
-    ++counters_.equilibria;
-    next.step = old.step + 1;
-    next.time = time;
-    next.last_step = 0.;
-    next.displacement = q;
-    next.velocity.assign(q.size(), 0.);
-    next.relative_velocity.assign(old.jump.size(), 0.);
-    next.point_force = relaxation_->point_force();
-    next.pressure = relaxation_->pressure();
-    next.impulse.assign(old.jump.size(), 0.);
-    next.viscous_traction = old.viscous_traction;
-    std::vector<double> change(q.size());
-    for (std::size_t k = 0; k < q.size(); ++k)
-      change[k] = q[k] - old.displacement[k];
-    next.jump.resize(old.jump.size());
-    delassus_->relative_velocity(change.data(), next.jump.data());
-    for (std::size_t k = 0; k < next.jump.size(); ++k)
-      next.jump[k] += old.jump[k];
-  }
-
   template class EquilibriumSearch<2>;
   template class EquilibriumSearch<3>;
 } // namespace nsfd

@@ -144,6 +144,7 @@ namespace nsfd
     void begin(const State &old, double time);
     void take(const State &old, double time, const std::vector<double> &q,
               State &next);
+    bool settle_springs(std::vector<double> &q, StepReport &report);
     void respond(const State &old, double time, double aside,
                  std::vector<double> &q, StepReport &report);
     void refuse_rigid_body_modes(const State &old, double time);

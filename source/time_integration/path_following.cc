@@ -8,7 +8,7 @@ namespace nsfd
 {
   void PathFollowing::accept(const PathReport &report)
   {
-    constexpr unsigned int few = 10, many = 25;
+    constexpr unsigned int few = 6, many = 12;
     constexpr double growth = 1.5;
     ++steps;
     // the load rises and nothing snaps: load steps again

@@ -30,10 +30,14 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  void PathLaws<dim>::start()
+  std::size_t PathLaws<dim>::start()
   {
     laws_.hold();
     last_ = now_ = Sample();
+    for (std::size_t i = 0; i < problem_.n_owned; ++i)
+      if (iterate_.at.kind[i] == PointKind::rigid && laws_.law(i).law)
+        return i;
+    return End::none;
   }
 
   /** It has its law, which is held. */
@@ -48,15 +52,6 @@ namespace nsfd
   {
     return bonds_ && iterate_.activated[i] != LoadStepIterate<dim>::opened &&
            bonds_->is_closed(iterate_.at, i);
-  }
-
-  template <int dim>
-  std::size_t PathLaws<dim>::point_held_by_rows() const
-  {
-    for (std::size_t i = 0; i < problem_.n_owned; ++i)
-      if (iterate_.at.kind[i] == PointKind::rigid && laws_.law(i).law)
-        return i;
-    return problem_.n_points;
   }
 
   template <int dim>
@@ -107,11 +102,46 @@ namespace nsfd
            law.dissipated(start, law.moved(start, jump)).total();
   }
 
+  /**
+   * What a point would carry if all joined points of its face carried the same
+   * traction: their sum alone is that of the nodes.
+   */
+  template <int dim>
+  auto PathLaws<dim>::mean_of_face(const std::size_t i,
+                                   const std::vector<double> &force) const
+      -> Vector
+  {
+    const auto &face = points_.faces[points_.face_of[i]];
+    Vector sum{};
+    double weight = 0.;
+    for (std::size_t k = face.first; k < face.first + face.count; ++k) {
+      if (!takes_part(k) || !is_closed(k))
+        continue;
+      weight += problem_.weight[k];
+      for (unsigned int c = 0; c < dim; ++c)
+        sum[c] += force[k * dim + c];
+    }
+    for (double &one : sum)
+      one *= problem_.weight[i] / weight;
+    return sum;
+  }
+
   /** Of its strength, of a joined point. */
   template <int dim>
   double PathLaws<dim>::share(const std::size_t i, const double s) const
   {
-    const Vector r = on_line(&Sample::force, i, s);
+    const double x = (s - now_.load_time) / (now_.load_time - last_.load_time);
+    const Vector here = mean_of_face(i, now_.force),
+                 there = mean_of_face(i, last_.force);
+    Vector r;
+    for (unsigned int c = 0; c < dim; ++c)
+      r[c] = here[c] + x * (here[c] - there[c]);
+    return share_of(i, r);
+  }
+
+  template <int dim>
+  double PathLaws<dim>::share_of(const std::size_t i, const Vector &r) const
+  {
     return effective_traction<dim>(problem_, i, -r[0], r.data() + 1) /
            (problem_.weight[i] * point_strength<dim>(problem_, i));
   }
@@ -149,17 +179,28 @@ namespace nsfd
 
   /** Below 0 as long as the step goes on at @p s; collective. */
   template <int dim>
-  double PathLaws<dim>::excess(const PathControl &control, const double s) const
+  double PathLaws<dim>::excess(const PathControl &control, const double s,
+                               std::size_t *const point) const
   {
-    double result = (s - control.start) / control.longest - 1.;
+    double result =
+        control.alone ? -1. : (s - control.start) / control.longest - 1.;
+    std::size_t worst = End::none;
     std::vector<double> dissipated(problem_.n_owned);
     for (std::size_t i = 0; i < problem_.n_points; ++i) {
-      result = std::max(result, event(i, s));
+      const double one =
+          control.alone && takes_part(i) && is_closed(i) ? -1. : event(i, s);
+      if (one > result) {
+        result = one;
+        worst = i;
+      }
       if (i < problem_.n_owned)
         dissipated[i] = dissipation_of(i, s);
     }
     const double sum = communicator_.sum(dissipated);
-    return std::max(communicator_.max(result), sum / control.dissipation - 1.);
+    const double dissipation = sum / control.dissipation - 1.;
+    if (point)
+      *point = dissipation > result ? End::none : worst;
+    return std::max(communicator_.max(result), dissipation);
   }
 
   /**
@@ -169,17 +210,25 @@ namespace nsfd
   template <int dim>
   auto PathLaws<dim>::end(const PathControl &control) const -> End
   {
-    constexpr unsigned int most = 60, finer = 60;
-    const auto f = [&](const double s) { return excess(control, s); };
+    constexpr unsigned int most = 60, finer = 60, far = 10;
+    const auto f = [&](const double s) { return excess(control, s, nullptr); };
     End result;
     double high = control.start + control.longest, f_high = f(high);
+    double step = control.longest;
+    for (unsigned int k = 0; control.alone && k < far && f_high < 0.; ++k) {
+      high += step;
+      f_high = f(high);
+      step *= 2.;
+    }
     result.load_time = high;
     if (f_high <= 4. * std::numeric_limits<double>::epsilon() *
                       (1. + std::abs(high) / control.longest)) {
-      result.found = result.at_longest = true;
+      result.at_longest = !control.alone;
+      result.found = result.at_longest || f_high >= 0.;
       return result;
     }
-    double higher = high, step = control.longest / 16.;
+    double higher = high;
+    step = control.longest / 16.;
     for (unsigned int k = 0; k < most; ++k, step *= 2.) {
       double low = high - step, f_low = f(low);
       if (f_low > f_high) { // beyond the least: sections of a bracket
@@ -202,6 +251,7 @@ namespace nsfd
             high - bracketed_root([&](const double x) { return f(high - x); },
                                   0., high - low, f_high, f_low);
         result.found = true;
+        excess(control, result.load_time, &result.point);
         return result;
       }
       higher = high;
@@ -273,25 +323,47 @@ namespace nsfd
   }
 
   template <int dim>
-  bool PathLaws<dim>::open(const double s, const double dissipation)
+  bool PathLaws<dim>::open(const double s)
+  {
+    std::vector<std::size_t> points; // all of a face at once
+    for (std::size_t i = 0; i < problem_.n_points; ++i)
+      if (takes_part(i) && is_closed(i) && share(i, s) >= 1. - at_strength)
+        points.push_back(i);
+    for (const std::size_t i : points)
+      iterate_.activated[i] = LoadStepIterate<dim>::opened;
+    return communicator_.any(!points.empty());
+  }
+
+  template <int dim>
+  void PathLaws<dim>::guess(const double s, const double dissipation)
   {
     std::vector<std::size_t> points;
     unsigned int owned = 0;
-    for (std::size_t i = 0; i < problem_.n_points; ++i)
-      if (takes_part(i) && is_closed(i) && share(i, s) >= 1. - at_strength) {
-        points.push_back(i);
-        owned += i < problem_.n_owned;
-      }
+    for (std::size_t i = 0; i < problem_.n_points; ++i) {
+      if (!takes_part(i) || is_closed(i) || laws_.law(i).law->mixed())
+        continue;
+      const double last = laws_.history(i).opening;
+      const Vector u = on_line(&Sample::jump, i, s);
+      const CohesiveLaw &law = *laws_.law(i).law;
+      const double l = problem_.opening_factor[i];
+      if (l * last >= law.final_opening() || l * last < law.peak_opening() ||
+          (iterate_.activated[i] != LoadStepIterate<dim>::opened &&
+           reach_of<dim>(laws_.law(i), u.data()).opening <
+               last * (1. - at_strength)))
+        continue;
+      points.push_back(i);
+      owned += i < problem_.n_owned;
+    }
     const double all = double(communicator_.sum_integer(owned));
     for (const std::size_t i : points) {
-      // the triangle above the secant
-      laws_.held(i).opening = std::min(
-          2. * dissipation /
-              (all * problem_.weight[i] * point_strength<dim>(problem_, i)),
-          laws_.opening_scale(i) / 2.);
-      iterate_.activated[i] = LoadStepIterate<dim>::opened;
+      // a triangle above the secant
+      const double strength =
+          problem_.strength_factor[i] * laws_.law(i).law->strength();
+      laws_.held(i).opening =
+          laws_.history(i).opening +
+          std::min(2. * dissipation / (all * problem_.weight[i] * strength),
+                   laws_.opening_scale(i) / 2.);
     }
-    return all > 0.;
   }
 
   template <int dim>

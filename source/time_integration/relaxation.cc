@@ -46,8 +46,8 @@ namespace nsfd
                    : nullptr),
         laws_(discretization, delassus, problem_, iterate_,
               step_problem_.has_extrinsic(), bonds_.get()),
-        path_laws_(delassus.communicator(), problem_, iterate_, laws_,
-                   bonds_.get()),
+        path_laws_(delassus.communicator(), delassus.points(), problem_,
+                   iterate_, laws_, bonds_.get()),
         driven_(input, discretization)
   {
   }
@@ -81,7 +81,7 @@ namespace nsfd
       bonds_->set();
     balance_.begin(old.displacement, iterate_.force, support_, problem_.n_owned,
                    driven_.largest(), input_.statics->tolerance);
-    set_loads();
+    aim(time, duration);
   }
 
   template <int dim>
@@ -89,15 +89,9 @@ namespace nsfd
   {
     time_ = time;
     driven_.set(*iterate_.old, time, duration);
-    set_loads();
-  }
-
-  template <int dim>
-  void Relaxation<dim>::set_loads()
-  {
-    if (free_motion_.set_loads(time_, iterate_.old->clock))
+    if (free_motion_.set_loads(time, iterate_.old->clock))
       ++counters_.load_assemblies;
-    free_motion_.set_pressure(*iterate_.old, time_, pressure_);
+    free_motion_.set_pressure(*iterate_.old, time, pressure_);
   }
 
   /** What counts from the last equilibrium instead of from the iterate. */

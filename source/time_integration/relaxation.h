@@ -67,6 +67,8 @@ namespace nsfd
     HeldLaws<dim> &laws() { return laws_; }
     /** The same where the load time is unknown. */
     PathLaws<dim> &path_laws() { return path_laws_; }
+    /** w kappa of the points, N/m. */
+    const std::vector<double> &support() const { return support_; }
     /** Of bodies that share nodes, or null. */
     StaticBonds<dim> *bonds() { return bonds_.get(); }
     /** Of the last round, by the largest forces so far. */
@@ -108,7 +110,6 @@ namespace nsfd
     void constrain(double h);
     void soften(double h);
     void set_support();
-    void set_loads();
 
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
