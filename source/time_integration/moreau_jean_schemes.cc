@@ -217,9 +217,12 @@ namespace nsfd
         if (block.plateau || (block.law && block.law->adds_openings()))
           refuse("tractions that stay while a point closes" + of,
                  "write another law there, or " + other);
-        if (block.law && (block.law->rate_dependent() || block.law->heals() ||
-                          std::isinf(block.law->steepest_softening())))
-          refuse("a law that takes time or drops at once" + of,
+        if (block.law &&
+            (block.law->mixed() || block.law->rate_dependent() ||
+             block.law->heals() || std::isinf(block.law->steepest_softening())))
+          refuse("a law that takes time, drops at once or has two damage "
+                 "scalars" +
+                     of,
                  "write another law there, or " + other);
       }
       for (const BoundaryInput &boundary : scene.boundaries)

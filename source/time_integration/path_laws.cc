@@ -20,6 +20,9 @@ namespace nsfd
     constexpr double at_strength = 1e-6;
     /** Of G/R_max: a point that has been opened and closes again. */
     constexpr double closed_again = 1e-6;
+    /** The same of the spring that an open point starts with, at least: stiffer
+        ones are hard to solve. */
+    constexpr double least_opening = 1e-3;
 
     LawPoint law_of(const Interaction &interaction, const double strength,
                     const double opening)
@@ -359,10 +362,12 @@ namespace nsfd
       // a triangle above the secant
       const double strength =
           problem_.strength_factor[i] * laws_.law(i).law->strength();
+      const double scale = laws_.opening_scale(i);
+      const bool opens = iterate_.activated[i] == LoadStepIterate<dim>::opened;
       laws_.held(i).opening =
           laws_.history(i).opening +
-          std::min(2. * dissipation / (all * problem_.weight[i] * strength),
-                   laws_.opening_scale(i) / 2.);
+          std::clamp(2. * dissipation / (all * problem_.weight[i] * strength),
+                     opens ? least_opening * scale : 0., scale / 2.);
     }
   }
 
