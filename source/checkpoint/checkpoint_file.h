@@ -14,7 +14,7 @@ namespace nsfd
    */
   namespace checkpoint_file
   {
-    constexpr unsigned int format = 12;
+    constexpr unsigned int format = 13;
     constexpr std::size_t head_size = 512;
 
     /** Number and commit of this program. */

@@ -71,6 +71,10 @@ namespace nsfd
                                                   "Time/integration tolerance",
                                                   "Time/equilibrium tolerance",
                                                   "Time/at solution jump"};
+    // the load time is one of its own there
+    const std::string path = "arc length";
+    if (name == "Time/at solution jump" && (then == path || now == path))
+      return false;
     return is_in("Solver") || is_in("Output") ||
            std::find(free.begin(), free.end(), name) != free.end();
   }

@@ -22,6 +22,8 @@ namespace nsfd
         result.insert(result.end(), {"heat", "heat_stored", "hottest"});
       if (columns.heated_sides)
         result.push_back("heat_given");
+      if (columns.load_time)
+        result.push_back("load_time");
       return result;
     }
   } // namespace
@@ -33,19 +35,20 @@ namespace nsfd
 
   HistoryFile::HistoryFile(const std::string &path, const Columns &columns)
       : absorbed_(columns.absorbed), heat_(columns.heat),
-        heated_sides_(columns.heated_sides), file_(path, names(columns))
+        heated_sides_(columns.heated_sides), load_time_(columns.load_time),
+        file_(path, names(columns))
   {
   }
 
   HistoryFile::HistoryFile(const std::string &path, const Columns &columns,
                            const std::uintmax_t n_bytes)
       : absorbed_(columns.absorbed), heat_(columns.heat),
-        heated_sides_(columns.heated_sides),
+        heated_sides_(columns.heated_sides), load_time_(columns.load_time),
         file_(path, names(columns), n_bytes)
   {
   }
 
-  void HistoryFile::write(const HistoryRow &row)
+  void HistoryFile::write(const HistoryRow &row, const double load_time)
   {
     const EnergyLines &e = row.energy;
     std::vector<double> line = {double(row.step),
@@ -77,6 +80,8 @@ namespace nsfd
       if (heated_sides_)
         line.push_back(heat.given);
     }
+    if (load_time_)
+      line.push_back(load_time);
     file_.write(line);
   }
 

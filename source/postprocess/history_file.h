@@ -21,6 +21,7 @@ namespace nsfd
       bool axisymmetric = false; ///< measures are per radian
       bool heat = false;         ///< the last columns of all
       bool heated_sides = false; ///< one more behind them
+      bool load_time = false;    ///< the last one of all
 
       std::size_t n_reactions() const { return driven.size() * dimension; }
     };
@@ -35,7 +36,8 @@ namespace nsfd
     HistoryFile(const std::string &path, const Columns &columns,
                 std::uintmax_t n_bytes);
 
-    void write(const HistoryRow &row);
+    /** @p load_time (s) is the last column, where there is one. */
+    void write(const HistoryRow &row, double load_time);
 
     /** Of all rows so far, on the disk for good when this returns. */
     std::uintmax_t n_bytes() { return file_.n_bytes(); }
@@ -51,7 +53,7 @@ namespace nsfd
     static std::string header(const Columns &columns);
 
   private:
-    const bool absorbed_, heat_, heated_sides_;
+    const bool absorbed_, heat_, heated_sides_, load_time_;
     TableFile file_;
   };
 } // namespace nsfd

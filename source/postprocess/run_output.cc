@@ -10,7 +10,7 @@
 #include "fragment_output.h"
 #include "history_file.h"
 #include "nsfd/core/archive.h"
-#include "nsfd/scene/scene_input.h"
+#include "nsfd/scene/load_path.h"
 #include "progress.h"
 #include "records/run_options.h"
 #include "report.h"
@@ -51,7 +51,8 @@ namespace nsfd
             input_.has_absorbing_sides(),
             input_.axisymmetric,
             input_.has_heat(),
-            has_heated_sides(input_)};
+            has_heated_sides(input_),
+            follows_path(input_)};
   }
 
   template <int dim>
@@ -91,15 +92,15 @@ namespace nsfd
   void RunOutput<dim>::start(const HistoryRow &row)
   {
     if (history_file_)
-      history_file_->write(row);
+      history_file_->write(row, row.time);
     keep(row);
   }
 
   template <int dim>
-  void RunOutput<dim>::record(const HistoryRow &row)
+  void RunOutput<dim>::record(const HistoryRow &row, const double load_time)
   {
     if (history_file_)
-      history_file_->write(row);
+      history_file_->write(row, load_time);
     if (progress_)
       progress_->step(row);
     keep(row);

@@ -48,7 +48,8 @@ namespace nsfd
     void start(const HistoryRow &row);
 
     /** An accepted step: history.csv, progress, the curves of the report. */
-    void record(const HistoryRow &row);
+    /** A step whose loads are those of @p load_time, s. */
+    void record(const HistoryRow &row, double load_time);
 
     /**
      * Fields and pictures if they are due; at the end always. True if this was

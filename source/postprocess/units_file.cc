@@ -52,6 +52,8 @@ namespace nsfd
       }
       if (columns.heated_sides)
         units["heat_given"] = energy;
+      if (columns.load_time)
+        units["load_time"] = "s";
       return units;
     }
 

@@ -11,8 +11,11 @@
 #include "discretization/point_factors.h"
 #include "input/formula_check.h"
 #include "nonsmooth/solver_name.h"
+#include "nsfd/scene/load_path.h"
 
 #include <deal.II/grid/tria.h>
+
+#include <fmt/format.h>
 
 namespace nsfd
 {
@@ -47,6 +50,12 @@ namespace nsfd
                                              const Communicator &communicator)
   {
     std::vector<std::string> problems;
+    if (follows_path(input) && communicator.size() > 1)
+      problems.push_back(
+          fmt::format("Time/at solution jump = arc length runs on one rank, "
+                      "not on {}: run it without mpirun, or write relax, stop "
+                      "or dynamic",
+                      communicator.size()));
     build_mesh_parts(input, communicator, problems);
     if (problems.empty()) {
       find_unused_blocks(input, *this, communicator, problems);

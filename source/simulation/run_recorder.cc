@@ -181,7 +181,7 @@ namespace nsfd
     row.residual = report.solver.residual;
     row.reactions = steps_.integrator().reactions();
     row.heat = heat_of(input_, state, state.heat.hottest);
-    output_->record(row);
+    output_->record(row, steps_.integrator().load_time(state));
     if (is_shown)
       say(extremes_->observe(previous, state));
     observe(state, &previous, row);

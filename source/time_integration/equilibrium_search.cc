@@ -84,7 +84,7 @@ namespace nsfd
   void EquilibriumSearch<dim>::serialize(Archive &archive)
   {
     const Archive::Part part(archive, "equilibria");
-    relaxation_->serialize(archive);
+    relaxation_->balance().serialize(archive);
     delassus_->serialize(archive);
     solver_->serialize(archive);
   }
@@ -112,6 +112,7 @@ namespace nsfd
   {
     State state = given;
     StepReport report;
+    start_ = 0.;
     find(given, 0., Way::near, state, report);
     balance_->account(*relaxation_,
                       std::vector<double>(given.velocity.size(), 0.), given,
@@ -133,7 +134,7 @@ namespace nsfd
   template <int dim>
   void EquilibriumSearch<dim>::begin(const State &old, const double time)
   {
-    relaxation_->begin(old, time, time - old.time);
+    relaxation_->begin(old, time, time - start_);
     const auto bonds = relaxation_->bonds();
     if (!bonds)
       return;
@@ -176,7 +177,7 @@ namespace nsfd
     EquilibriumReport report;
     std::vector<double> forces_old(old.velocity.size(), 0.);
     if (discretization_.loads().any())
-      discretization_.add_loads(old.time, forces_old, old.clock);
+      discretization_.add_loads(start_, forces_old, old.clock);
     find(old, time, way, next, report.step);
     report.stable = relaxation_->softening() < 1.;
     const EnergyLeft left =
@@ -203,8 +204,10 @@ namespace nsfd
   template <int dim>
   EquilibriumReport
   EquilibriumSearch<dim>::advance(const State &old, const double time,
-                                  State &next, const bool may_be_shortened)
+                                  State &next, const bool may_be_shortened,
+                                  const double delay)
   {
+    start_ = old.time - delay;
     if (!has_laws(input_))
       return try_way(old, time, Way::near, false, next);
 
@@ -285,18 +288,18 @@ namespace nsfd
   bool EquilibriumSearch<dim>::accelerate(std::vector<double> &q,
                                           StepReport &report)
   {
-    const double start = relaxation_->imbalance();
+    const double start = relaxation_->balance().imbalance();
     std::vector<double> mixed = q, best = q;
     double smallest = start;
-    accelerated_rounds(communicator_, 5, accelerated, mixed,
-                       [&](std::vector<double> &x) {
-                         const bool more = round(x, report);
-                         if (solved_ && relaxation_->imbalance() < smallest) {
-                           smallest = relaxation_->imbalance();
-                           best = x;
-                         }
-                         return more && relaxation_->imbalance() < 10. * start;
-                       });
+    accelerated_rounds(
+        communicator_, 5, accelerated, mixed, [&](std::vector<double> &x) {
+          const bool more = round(x, report);
+          if (solved_ && relaxation_->balance().imbalance() < smallest) {
+            smallest = relaxation_->balance().imbalance();
+            best = x;
+          }
+          return more && relaxation_->balance().imbalance() < 10. * start;
+        });
     q = best;
     solved_ = true;
     return smallest < start;
@@ -313,8 +316,9 @@ namespace nsfd
     const SolverReport solve = relaxation_->relax(q, h_, tolerance);
     report.solver.add_work(solve);
     solved_ = solve.converged;
-    report.solver.residual = relaxation_->imbalance();
-    report.solver.converged = solved_ && relaxation_->imbalance() <= goal_;
+    report.solver.residual = relaxation_->balance().imbalance();
+    report.solver.converged =
+        solved_ && relaxation_->balance().imbalance() <= goal_;
     return solved_ && !report.solver.converged;
   }
 
@@ -341,7 +345,7 @@ namespace nsfd
   {
     const std::string modes = rigid_body_modes(
         discretization_, *delassus_, torn(old, relaxation_->solutions()),
-        relaxation_->residual());
+        relaxation_->balance().residual());
     if (modes.empty())
       return;
     throw StepRejected(
@@ -384,8 +388,8 @@ namespace nsfd
         ++counters_.step_changes;
         continue;
       }
-      const double ratio = relaxation_->imbalance() / last;
-      last = relaxation_->imbalance();
+      const double ratio = relaxation_->balance().imbalance() / last;
+      last = relaxation_->balance().imbalance();
       if (h_ < first_h_) {
         h_ = std::min(2. * h_, first_h_);
         last = std::numeric_limits<double>::infinity();
@@ -400,7 +404,7 @@ namespace nsfd
       if (ratio > 0.1 && last < near) {
         if (!accelerate(q, report))
           near = 0.1 * last;
-        last = relaxation_->imbalance();
+        last = relaxation_->balance().imbalance();
       } else if (ratio > 0.5 && h_ < longest * crossing_) {
         h_ = std::min(4. * h_, longest * crossing_);
         last = std::numeric_limits<double>::infinity();
@@ -464,26 +468,9 @@ namespace nsfd
       throw StepRejected(fmt::format(
           "no equilibrium was found at t = {:.6g}: {:.2e} of the forces are "
           "not balanced; worst face {}",
-          time, relaxation_->imbalance(), relaxation_->worst_face()));
+          time, relaxation_->balance().imbalance(), relaxation_->worst_face()));
     }
-    ++counters_.equilibria;
-    next.step = old.step + 1;
-    next.time = time;
-    next.last_step = 0.;
-    next.displacement = q;
-    next.velocity.assign(q.size(), 0.);
-    next.relative_velocity.assign(old.jump.size(), 0.);
-    next.point_force = relaxation_->point_force();
-    next.pressure = relaxation_->pressure();
-    next.impulse.assign(old.jump.size(), 0.);
-    next.viscous_traction = old.viscous_traction;
-    std::vector<double> change(q.size());
-    for (std::size_t k = 0; k < q.size(); ++k)
-      change[k] = q[k] - old.displacement[k];
-    next.jump.resize(old.jump.size());
-    delassus_->relative_velocity(change.data(), next.jump.data());
-    for (std::size_t k = 0; k < next.jump.size(); ++k)
-      next.jump[k] += old.jump[k];
+    take(old, time, q, next);
   }
 
   template class EquilibriumSearch<2>;

@@ -43,6 +43,16 @@ namespace nsfd
     bool accepted() const { return !jumps && !skips_peak; }
   };
 
+  /** A step along a path of equilibria as it was taken. */
+  struct PathReport {
+    EquilibriumReport equilibrium;
+    double load_time = 0.;   ///< of the loads at its end, s
+    double dissipated = 0.;  ///< by the laws, J
+    double points = 0.;      ///< that share it: (sum d)^2 / sum d^2
+    bool at_longest = false; ///< the load time has gone as far as it may
+    unsigned int rounds = 0; ///< of springs
+  };
+
   /**
    * Equilibria under the loads and the prescribed motion of a time, without
    * inertia (section 3.1 of [AM06]): rounds of long implicit steps from
@@ -79,12 +89,24 @@ namespace nsfd
     State start(const State &given);
 
     /**
-     * From the equilibrium @p old to @p next at @p time. @throws StepRejected
-     * if none was found: no support, or none near @p old. If the step @p
-     * may_be_shortened, one that is bound to skip a peak is not even solved.
+     * From the equilibrium @p old to @p next at the load time @p time, which
+     * becomes its time. @throws StepRejected if none was found: no support, or
+     * none near @p old. If the step @p may_be_shortened, one that is bound to
+     * skip a peak is not even solved. The loads of @p old are @p delay (s)
+     * behind its time.
      */
     EquilibriumReport advance(const State &old, double time, State &next,
-                              bool may_be_shortened = false);
+                              bool may_be_shortened = false, double delay = 0.);
+
+    /**
+     * From the equilibrium @p old to @p next on the path of equilibria where
+     * the load time is an unknown, through limit points and back: it goes on by
+     * @p longest (s) at most, and the laws dissipate @p share of the toughness
+     * of a point, times @p points, at most. Its time is the load time.
+     * @throws StepRejected if none was found.
+     */
+    PathReport follow(const State &old, double delay, double longest,
+                      double share, double points, State &next);
 
     /** Force on each driven boundary, dim per boundary. */
     const std::vector<double> &reactions() const;
@@ -120,6 +142,11 @@ namespace nsfd
     bool round(std::vector<double> &q, StepReport &report);
     bool accelerate(std::vector<double> &q, StepReport &report);
     void begin(const State &old, double time);
+    void take(const State &old, double time, const std::vector<double> &q,
+              State &next);
+    bool settle_springs(std::vector<double> &q, StepReport &report);
+    void respond(const State &old, double time, double aside,
+                 std::vector<double> &q, StepReport &report);
     void refuse_rigid_body_modes(const State &old, double time);
 
     const SceneInput &input_;
@@ -133,8 +160,9 @@ namespace nsfd
     /// s: across a cell, or what holds what floats as well; pseudo-time step
     /// of the rounds
     double crossing_, h_;
-    double first_h_;           ///< of every solve
-    double goal_ = 0.;         ///< of the rounds: share of the forces left over
+    double start_ = 0.; ///< load time of the equilibrium before the step, s
+    double first_h_;    ///< of every solve
+    double goal_ = 0.;  ///< of the rounds: share of the forces left over
     std::vector<double> held_; ///< where springs in place of laws balance
     bool solved_ = true;       ///< the point laws, in the last round
     bool hurried_ = false;     ///< a shorter step of the load is cheaper

@@ -37,7 +37,6 @@ namespace nsfd
             iterate_.old->slip_max.empty() ? 0. : iterate_.old->slip_max[i]};
   }
 
-  /** G/R_max of a point, m. */
   template <int dim>
   double HeldLaws<dim>::opening_scale(const std::size_t i) const
   {

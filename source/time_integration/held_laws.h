@@ -43,6 +43,18 @@ namespace nsfd
     /** Laws again, next to where the held rounds have ended. */
     void release();
     bool holds() const { return holds_; }
+    /** Of a spring, while laws are held: as far as the point is damaged. */
+    Reach &held(const std::size_t point) { return held_[point]; }
+    const Interaction &law(const std::size_t point) const
+    {
+      return interactions_[interaction_[point]];
+    }
+    /** G/R_max of a point, m, while laws are held. */
+    double opening_scale(std::size_t point) const;
+    /** The point has a law that it follows or will follow. */
+    bool may_damage(std::size_t point) const;
+    /** The damage of the start of the step. */
+    Reach history(std::size_t point) const;
 
     /** Springs in place of the laws of a round; joints stay as they are. */
     void put_springs();
@@ -85,11 +97,8 @@ namespace nsfd
     Passages passages(const State &next, bool path) const;
 
   private:
-    bool may_damage(std::size_t point) const;
     std::vector<double> joint_shares() const;
     void let_joints_go(std::vector<char> &fresh);
-    double opening_scale(std::size_t point) const;
-    Reach history(std::size_t point) const;
     double load_at_start(std::size_t point, double now,
                          const std::vector<double> &joints) const;
     Reach held_reach(std::size_t point) const;

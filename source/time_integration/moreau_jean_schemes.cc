@@ -5,11 +5,13 @@
 #include "time_scheme.h"
 
 #include "nsfd/parameters/section_reader.h"
+#include "nsfd/scene/load_path.h"
 #include "parameters/input_errors.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -197,6 +199,57 @@ namespace nsfd
     }
   };
 
+  namespace
+  {
+    /** What a path of equilibria through limit points does not know. */
+    void refuse_path(SectionReader &reader, const SceneInput &scene)
+    {
+      const std::string entry = "at solution jump",
+                        other = "write relax, stop or dynamic here";
+      const auto refuse = [&](const std::string &what,
+                              const std::string &cure) {
+        reader.error(entry, "arc length does not follow " + what, cure);
+      };
+      for (const InterfaceInput &block : scene.interfaces) {
+        const std::string of = " of `" + block.section() + "`";
+        if (block.friction > 0.)
+          refuse("friction" + of, "set friction = 0 there, or " + other);
+        if (block.plateau || (block.law && block.law->adds_openings()))
+          refuse("tractions that stay while a point closes" + of,
+                 "write another law there, or " + other);
+        if (block.law &&
+            (block.law->mixed() || block.law->rate_dependent() ||
+             block.law->heals() || std::isinf(block.law->steepest_softening())))
+          refuse("a law that takes time, drops at once or has two damage "
+                 "scalars" +
+                     of,
+                 "write another law there, or " + other);
+      }
+      for (const BoundaryInput &boundary : scene.boundaries)
+        if (boundary.hold_at != CrackEvent::none)
+          refuse("loads that stop at an event, those of `Boundary: " +
+                     boundary.name + "`",
+                 "set hold at = never there, or " + other);
+      for (const ObstacleInput &obstacle : scene.obstacles)
+        if (obstacle.friction > 0.)
+          refuse("friction of `Obstacle: " + obstacle.name + "`",
+                 "set friction = 0 there, or " + other);
+      if (scene.has_rigid_bodies())
+        refuse("rigid bodies", "let them deform, or " + other);
+      if (scene.has_heat())
+        refuse("heat", "leave `heat capacity` out, or " + other);
+      if (!scene.equilibria_at_nodes)
+        refuse("cells that share no nodes",
+               "leave `method` and `path` of section Solver and section "
+               "Adaptivity out, or " +
+                   other);
+      if (reader.has("quasi-static until"))
+        refuse("what comes after `quasi-static until`: the load time may be "
+               "another one then",
+               "leave that entry out, or " + other);
+    }
+  } // namespace
+
   /** Equilibria from one load to the next, and Moreau-Jean steps after them. */
   class QuasiStaticScheme final : public MoreauJeanScheme
   {
@@ -231,12 +284,17 @@ namespace nsfd
                                       {0., time.end, true, false},
                                       "s; Moreau-Jean steps after it");
       const std::string at_jump = reader.choice(
-          "at solution jump", "relax", {"relax", "stop", "dynamic"},
+          "at solution jump", "relax",
+          {"relax", "stop", "dynamic", "arc length"},
           "where no equilibrium continues the last: take the next one that "
-          "energy suffices for (relax), stop, or follow it in time (dynamic)");
-      statics.at_jump = at_jump == "dynamic" ? SolutionJump::dynamic
-                        : at_jump == "relax" ? SolutionJump::relax
-                                             : SolutionJump::stop;
+          "energy suffices for (relax), stop, follow it in time (dynamic), or "
+          "follow the equilibria while the loads run backwards (arc length)");
+      statics.at_jump = at_jump == "dynamic"      ? SolutionJump::dynamic
+                        : at_jump == "relax"      ? SolutionJump::relax
+                        : at_jump == "arc length" ? along_the_path
+                                                  : SolutionJump::stop;
+      if (statics.at_jump == along_the_path)
+        refuse_path(reader, scene);
       if (reader.has("maximum bisections"))
         statics.jump_bisections = std::numeric_limits<unsigned int>::max();
       if (scene.may_move())

@@ -1,11 +1,26 @@
 #include "quasi_static.h"
 
 #include "nsfd/core/archive.h"
+#include "nsfd/scene/load_path.h"
 
 #include <fmt/format.h>
 
 namespace nsfd
 {
+  namespace
+  {
+    /** What the certificate watches, of an equilibrium after @p old. */
+    StepReport report_of(const EquilibriumReport &equilibrium, const State &old,
+                         const State &next)
+    {
+      StepReport report = equilibrium.step;
+      report.changes = changes_of_energy(old.energy, next);
+      report.changes.taken[std::size_t(WatchedLine::load_steps)] =
+          -equilibrium.above_mean;
+      return report;
+    }
+  } // namespace
+
   template <int dim>
   QuasiStatic<dim>::QuasiStatic(const SceneInput &input,
                                 const Discretization<dim> &discretization,
@@ -30,6 +45,12 @@ namespace nsfd
   StepReport QuasiStatic<dim>::take_step(const State &old,
                                          const StepRequest &step, State &next)
   {
+    if (statics_.at_jump == along_the_path) {
+      StepReport report;
+      if (!path_.on && take_load_step(old, step, next, report))
+        return report;
+      return follow_path(old, step, next);
+    }
     const bool may_relax =
         statics_.at_jump == SolutionJump::relax &&
         (step.bisections >= statics_.jump_bisections || !step.can_be_shorter);
@@ -44,11 +65,8 @@ namespace nsfd
       what = rejected.what();
     }
     StepReport report = equilibrium.step;
-    if (found) {
-      report.changes = changes_of_energy(old.energy, next);
-      report.changes.taken[std::size_t(WatchedLine::load_steps)] =
-          -equilibrium.above_mean;
-    }
+    if (found)
+      report = report_of(equilibrium, old, next);
     if (found && equilibrium.accepted())
       return report;
     const bool may_follow = found && equilibrium.may_follow();
@@ -85,6 +103,58 @@ namespace nsfd
       refuse(what, may_follow);
     report.note = what + "; relaxes to the next equilibrium";
     return report;
+  }
+
+  /** True if an equilibrium at the load of its end continues the last one. */
+  template <int dim>
+  bool QuasiStatic<dim>::take_load_step(const State &old,
+                                        const StepRequest &step, State &next,
+                                        StepReport &report)
+  {
+    const double delay = path_.delay;
+    try {
+      const EquilibriumReport equilibrium =
+          search_.advance(old, step.end - delay, next, true, delay);
+      if (!equilibrium.accepted())
+        return false;
+      report = report_of(equilibrium, old, next);
+    } catch (const StepRejected &) {
+      return false;
+    }
+    next.time = step.end;
+    return true;
+  }
+
+  template <int dim>
+  StepReport QuasiStatic<dim>::follow_path(const State &old,
+                                           const StepRequest &step, State &next)
+  {
+    PathFollowing path = path_;
+    for (;;) {
+      std::string failure;
+      try {
+        const PathReport taken = search_.follow(old, path.delay, step.length,
+                                                path.share, path.points, next);
+        if (taken.equilibrium.accepted()) {
+          path.accept(taken);
+          path.delay = step.end - taken.load_time;
+          path_ = path;
+          next.time = step.end;
+          return report_of(taken.equilibrium, old, next);
+        }
+        failure = fmt::format(
+            "{:.6g} J are not accounted for on the path of equilibria after "
+            "the load time {:.8g}; worst face {}",
+            taken.equilibrium.released_energy, old.time - path.delay,
+            taken.equilibrium.place);
+      } catch (const StepRejected &rejected) {
+        if (rejected.cure() == StepRejected::Cure::none)
+          throw;
+        failure = rejected.what();
+      }
+      if (!path.shorten())
+        throw StepRejected(failure, StepRejected::Cure::none);
+    }
   }
 
   template <int dim>
@@ -129,6 +199,8 @@ namespace nsfd
       return;
     counters["shortened_load_steps"] = shortened_;
     counters["solution_jumps"] = jumps_;
+    if (statics_.at_jump == along_the_path)
+      counters["path_steps"] = path_.steps;
     if (jumps_ > 0) {
       counters["solution_jump_energy"] = released_;
       counters["solution_jump_time"] = first_jump_;
@@ -148,6 +220,7 @@ namespace nsfd
   {
     archive.numbers("solution_jumps", shortened_, jumps_, released_,
                     first_jump_);
+    path_.serialize(archive);
   }
 
   template class QuasiStatic<2>;

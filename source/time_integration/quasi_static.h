@@ -1,6 +1,6 @@
 #pragma once
 
-#include "equilibrium_search.h"
+#include "path_following.h"
 
 #include "nsfd/scene/scene_input.h"
 
@@ -11,7 +11,10 @@ namespace nsfd
    * equilibrium at t = 0. A step is rejected where no equilibrium is found or
    * one leaves energy over; where no shorter one is left to be tried, the scene
    * says whether that ends the run, or its integrator of dynamics goes on, or
-   * the next equilibrium is taken with a note.
+   * the next equilibrium is taken with a note. With the arc length as the
+   * control no step is rejected: where no equilibrium continues the last one at
+   * the load of its end, the step follows the path of equilibria, on which the
+   * loads may run backwards.
    */
   template <int dim>
   class QuasiStatic final : public TimeIntegrator<dim>
@@ -42,6 +45,10 @@ namespace nsfd
     {
       return search_.reactions();
     }
+    double load_time(const State &state) const override
+    {
+      return state.time - path_.delay;
+    }
     ResidualKind residual_kind() const override
     {
       return ResidualKind::force_balance;
@@ -59,10 +66,15 @@ namespace nsfd
     EquilibriumSearch<dim> &search() { return search_; }
 
   private:
+    bool take_load_step(const State &old, const StepRequest &step, State &next,
+                        StepReport &report);
+    StepReport follow_path(const State &old, const StepRequest &step,
+                           State &next);
     [[noreturn]] void refuse(const std::string &what, bool may_follow) const;
 
     const StaticInput &statics_;
     EquilibriumSearch<dim> search_;
+    PathFollowing path_;
     unsigned int shortened_ = 0, jumps_ = 0;
     double released_ = 0., first_jump_ = 0.; ///< J; s
   };

@@ -45,7 +45,10 @@ namespace nsfd
                          input.discretization.degree == 1, problem_, iterate_)
                    : nullptr),
         laws_(discretization, delassus, problem_, iterate_,
-              step_problem_.has_extrinsic(), bonds_.get())
+              step_problem_.has_extrinsic(), bonds_.get()),
+        path_laws_(delassus.communicator(), delassus.points(), problem_,
+                   iterate_, laws_, bonds_.get()),
+        driven_(input, discretization)
   {
   }
 
@@ -71,43 +74,24 @@ namespace nsfd
     iterate_.force.resize(old.jump.size(), 0.);
     iterate_.activated.assign(old.kind.size(), 0);
     laws_.begin();
-    target_ = old.jump;
-    for (std::size_t i = 0; i < old.kind.size(); ++i) {
-      const PointOrigin origin = discretization_.origins()[i];
-      if (origin.kind != PointOrigin::Kind::motion)
-        continue;
-      const auto &boundary = input_.boundaries[origin.block];
-      const auto x = position_of(discretization_.points(), i);
-      const double its_time = old.clock.at(origin.block, time);
-      for (unsigned int c = 0; c < dim; ++c)
-        if (boundary.displacement[c])
-          target_[i * dim + c] = boundary.displacement[c]->at(x, its_time);
-        else if (boundary.velocity[c] && duration > 0. &&
-                 !old.clock.rests(origin.block, time))
-          target_[i * dim + c] +=
-              duration * boundary.velocity[c]->at(x, time - duration / 2.);
-    }
+    driven_.set(old, time, duration);
     if (support_.empty())
       set_support();
     if (bonds_)
       bonds_->set();
     balance_.begin(old.displacement, iterate_.force, support_, problem_.n_owned,
-                   largest_motion(), input_.statics->tolerance);
-    if (free_motion_.set_loads(time, old.clock))
-      ++counters_.load_assemblies;
-    free_motion_.set_pressure(old, time, pressure_);
+                   driven_.largest(), input_.statics->tolerance);
+    aim(time, duration);
   }
 
-  /** The largest prescribed jump of this rank, m. */
   template <int dim>
-  double Relaxation<dim>::largest_motion() const
+  void Relaxation<dim>::aim(const double time, const double duration)
   {
-    double largest = 0.;
-    for (std::size_t i = 0; i < iterate_.old->kind.size(); ++i)
-      if (discretization_.origins()[i].kind == PointOrigin::Kind::motion)
-        for (unsigned int c = 0; c < dim; ++c)
-          largest = std::max(largest, std::abs(target_[i * dim + c]));
-    return largest;
+    time_ = time;
+    driven_.set(*iterate_.old, time, duration);
+    if (free_motion_.set_loads(time, iterate_.old->clock))
+      ++counters_.load_assemblies;
+    free_motion_.set_pressure(*iterate_.old, time, pressure_);
   }
 
   /** What counts from the last equilibrium instead of from the iterate. */
@@ -121,8 +105,7 @@ namespace nsfd
       if (old.kind[i] == PointKind::prescribed) {
         for (unsigned int c = 0; c < dim; ++c)
           if (problem.mask[i] & (1u << c))
-            problem.given_velocity[i * dim + c] =
-                (target_[i * dim + c] - u[c]) / h;
+            problem.given_velocity[i * dim + c] = (driven_.at(i, c) - u[c]) / h;
         continue;
       }
       if (iterate_.at.kind[i] == PointKind::bonded)

@@ -1,7 +1,9 @@
 #pragma once
 
+#include "driven_jumps.h"
 #include "force_balance.h"
 #include "held_laws.h"
+#include "path_laws.h"
 #include "static_bonds.h"
 #include "step_problem.h"
 
@@ -51,20 +53,26 @@ namespace nsfd
 
     /**
      * From the equilibrium @p old, which outlives the rounds, to loads and
-     * motion at @p time, after @p duration of prescribed velocities.
+     * motion at the load time @p time, after @p duration of prescribed
+     * velocities.
      */
     void begin(const State &old, double time, double duration);
+    /** The same rounds go on to other loads. */
+    void aim(double time, double duration);
 
     /** q := q'. The residual of the point laws is solved to @p tolerance. */
     SolverReport relax(std::vector<double> &q, double h, double tolerance);
 
     /** Laws held as springs, and how far points are from their peaks. */
     HeldLaws<dim> &laws() { return laws_; }
+    /** The same where the load time is unknown. */
+    PathLaws<dim> &path_laws() { return path_laws_; }
+    /** w kappa of the points, N/m. */
+    const std::vector<double> &support() const { return support_; }
     /** Of bodies that share nodes, or null. */
     StaticBonds<dim> *bonds() { return bonds_.get(); }
-    /** See ForceBalance. */
-    double imbalance() const { return balance_.imbalance(); }
-    const std::vector<double> &residual() const { return balance_.residual(); }
+    /** Of the last round, by the largest forces so far. */
+    ForceBalance<dim> &balance() { return balance_; }
 
     /**
      * How much of its stiffness softening takes from the scene at the last
@@ -87,12 +95,9 @@ namespace nsfd
     {
       return iterate_.solutions;
     }
-    /** The largest forces so far. */
-    void serialize(Archive &archive) { balance_.serialize(archive); }
-
     const std::vector<double> &forces() const { return free_motion_.loads(); }
     const std::vector<double> &pressure() const { return pressure_; }
-    /** Of the equilibrium that is looked for, s. */
+    /** Of the loads of the equilibrium that is looked for, s. */
     double time() const { return time_; }
     std::string worst_face() const { return face(worst_point_); }
     std::string face(std::size_t point) const;
@@ -105,7 +110,6 @@ namespace nsfd
     void constrain(double h);
     void soften(double h);
     void set_support();
-    double largest_motion() const;
 
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
@@ -121,8 +125,9 @@ namespace nsfd
     LoadStepIterate<dim> iterate_;
     std::unique_ptr<StaticBonds<dim>> bonds_; ///< or null
     HeldLaws<dim> laws_;
+    PathLaws<dim> path_laws_;
     double time_ = 0.;
-    std::vector<double> target_; ///< jumps of driven points
+    DrivenJumps<dim> driven_;
     std::vector<double> pressure_;
     std::vector<double> support_; ///< w kappa of the points, N/m
     std::size_t worst_point_ = 0;

@@ -152,6 +152,8 @@ namespace nsfd
 
     /** Force on each driven boundary in the last step, N, dim per boundary. */
     virtual const std::vector<double> &reactions() const = 0;
+    /** What the loads of @p state, the last one, are those of, s. */
+    virtual double load_time(const State &state) const { return state.time; }
     virtual ResidualKind residual_kind() const
     {
       return ResidualKind::one_step_problem;
