@@ -36,8 +36,8 @@ namespace nsfd
     HistoryFile(const std::string &path, const Columns &columns,
                 std::uintmax_t n_bytes);
 
-    /** @p load_time (s) is the last column, where there is one. */
-    void write(const HistoryRow &row, double load_time);
+    /** @p load_time (s) is the last column, where Columns has it. */
+    void write(const HistoryRow &row, double load_time = 0.);
 
     /** Of all rows so far, on the disk for good when this returns. */
     std::uintmax_t n_bytes() { return file_.n_bytes(); }
