@@ -180,10 +180,19 @@ namespace nsfd
       end = best_end;
     }
     laws.set_damage(damage);
-    relaxation_->aim(end.load_time, end.load_time - start);
-    if (!settle_springs(q, work))
-      throw StepRejected("no equilibrium was found on the path");
-    laws.observe(end.load_time);
+    respond(old, end.load_time, aside, q, work);
+    // other points may be joined now than in the best round
+    control.alone = false;
+    const auto again = laws.end(control);
+    change = laws.follow(end.load_time, damage);
+    if (!again.found ||
+        !(std::abs(again.load_time - end.load_time) <=
+          no_increment * longest) ||
+        !(change <= 10. * near_laws))
+      throw StepRejected(fmt::format(
+          "no equilibrium was found on the path after the load time {:.6g}: "
+          "points open and close in turn",
+          start));
     const auto dissipated = laws.dissipated(end.load_time);
     if (!elastic && end.load_time < start - no_increment * longest &&
         !(dissipated.sum > near_laws * dissipation))
