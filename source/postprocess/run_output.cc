@@ -10,7 +10,6 @@
 #include "fragment_output.h"
 #include "history_file.h"
 #include "nsfd/core/archive.h"
-#include "nsfd/scene/load_path.h"
 #include "progress.h"
 #include "records/run_options.h"
 #include "report.h"
@@ -52,7 +51,7 @@ namespace nsfd
             input_.axisymmetric,
             input_.has_heat(),
             has_heated_sides(input_),
-            follows_path(input_)};
+            input_.follows_path()};
   }
 
   template <int dim>

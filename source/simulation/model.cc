@@ -11,7 +11,6 @@
 #include "discretization/point_factors.h"
 #include "input/formula_check.h"
 #include "nonsmooth/solver_name.h"
-#include "nsfd/scene/load_path.h"
 
 #include <deal.II/grid/tria.h>
 
@@ -50,7 +49,7 @@ namespace nsfd
                                              const Communicator &communicator)
   {
     std::vector<std::string> problems;
-    if (follows_path(input) && communicator.size() > 1)
+    if (input.follows_path() && communicator.size() > 1)
       problems.push_back(
           fmt::format("Time/at solution jump = arc length runs on one rank, "
                       "not on {}: run it without mpirun, or write relax, stop "

@@ -5,7 +5,6 @@
 #include "time_scheme.h"
 
 #include "nsfd/parameters/section_reader.h"
-#include "nsfd/scene/load_path.h"
 #include "parameters/input_errors.h"
 
 #include <fmt/format.h>
@@ -214,6 +213,11 @@ namespace nsfd
         const std::string of = " of `" + block.section() + "`";
         if (block.friction > 0.)
           refuse("friction" + of, "set friction = 0 there, or " + other);
+        if (block.law && block.law->extrinsic() && scene.dimension == 3)
+          refuse("extrinsic laws in space, only in the plane, where a face "
+                 "opens as a whole," +
+                     of,
+                 "write an intrinsic law there, or " + other);
         if (block.plateau || (block.law && block.law->adds_openings()))
           refuse("tractions that stay while a point closes" + of,
                  "write another law there, or " + other);
@@ -291,9 +295,9 @@ namespace nsfd
           "follow the equilibria while the loads run backwards (arc length)");
       statics.at_jump = at_jump == "dynamic"      ? SolutionJump::dynamic
                         : at_jump == "relax"      ? SolutionJump::relax
-                        : at_jump == "arc length" ? along_the_path
+                        : at_jump == "arc length" ? SolutionJump::arc_length
                                                   : SolutionJump::stop;
-      if (statics.at_jump == along_the_path)
+      if (statics.at_jump == SolutionJump::arc_length)
         refuse_path(reader, scene);
       if (reader.has("maximum bisections"))
         statics.jump_bisections = std::numeric_limits<unsigned int>::max();

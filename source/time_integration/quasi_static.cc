@@ -1,7 +1,6 @@
 #include "quasi_static.h"
 
 #include "nsfd/core/archive.h"
-#include "nsfd/scene/load_path.h"
 
 #include <fmt/format.h>
 
@@ -45,7 +44,7 @@ namespace nsfd
   StepReport QuasiStatic<dim>::take_step(const State &old,
                                          const StepRequest &step, State &next)
   {
-    if (statics_.at_jump == along_the_path) {
+    if (statics_.at_jump == SolutionJump::arc_length) {
       StepReport report;
       if (!path_.on && take_load_step(old, step, next, report))
         return report;
@@ -199,7 +198,7 @@ namespace nsfd
       return;
     counters["shortened_load_steps"] = shortened_;
     counters["solution_jumps"] = jumps_;
-    if (statics_.at_jump == along_the_path)
+    if (statics_.at_jump == SolutionJump::arc_length)
       counters["path_steps"] = path_.steps;
     if (jumps_ > 0) {
       counters["solution_jump_energy"] = released_;

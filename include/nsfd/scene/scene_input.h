@@ -146,6 +146,12 @@ namespace nsfd
       return large_motion && (!time.scheme.at_nodes || has_rigid_bodies() ||
                               !contacts.empty() || !obstacles.empty());
     }
+    /** The load time of equilibria is an unknown: it may run backwards. */
+    bool follows_path() const
+    {
+      return statics && statics->steps &&
+             statics->at_jump == SolutionJump::arc_length;
+    }
     /** A step is solved by iterations around linear ones. */
     bool iterates() const { return large_motion || has_history(); }
     /** Whether a step in time can come. */

@@ -4,9 +4,10 @@ namespace nsfd
 {
   /** What a run does where no equilibrium continues the last one. */
   enum class SolutionJump {
-    stop,    ///< ends with the last equilibrium
-    dynamic, ///< goes on from it with Moreau-Jean
-    relax    ///< takes the next equilibrium, counts the released energy
+    stop,      ///< ends with the last equilibrium
+    dynamic,   ///< goes on from it with Moreau-Jean
+    relax,     ///< takes the next equilibrium, counts the released energy
+    arc_length ///< follows the equilibria, with the load time as an unknown
   };
 
   /** Equilibria: at the start, and from step to step of the load. */
