@@ -254,9 +254,11 @@ namespace nsfd
                           : "quasi-static solutions jump,"));
       if (ratio >= 1.)
         line("",
-             fmt::format("what they release becomes motion; in bodies below "
-                         "{} they do not",
-                         engineering(length, "m")));
+             input.follows_path()
+                 ? "here the loads run backwards instead"
+                 : fmt::format("what they release becomes motion; in bodies "
+                               "below {} they do not",
+                               engineering(length, "m")));
     }
 
     template <int dim>

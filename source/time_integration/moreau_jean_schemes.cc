@@ -214,9 +214,7 @@ namespace nsfd
         if (block.friction > 0.)
           refuse("friction" + of, "set friction = 0 there, or " + other);
         if (block.law && block.law->extrinsic() && scene.dimension == 3)
-          refuse("extrinsic laws in space, only in the plane, where a face "
-                 "opens as a whole," +
-                     of,
+          refuse("extrinsic laws in space" + of,
                  "write an intrinsic law there, or " + other);
         if (block.plateau || (block.law && block.law->adds_openings()))
           refuse("tractions that stay while a point closes" + of,
