@@ -252,13 +252,11 @@ namespace nsfd
                ratio, engineering(diagonal, "m"),
                ratio < 1. ? "no quasi-static solution jumps"
                           : "quasi-static solutions jump,"));
-      if (ratio >= 1.)
-        line("",
-             input.follows_path()
-                 ? "here the loads run backwards instead"
-                 : fmt::format("what they release becomes motion; in bodies "
-                               "below {} they do not",
-                               engineering(length, "m")));
+      if (ratio >= 1. && input.follows_path())
+        line("", "here the loads run backwards instead");
+      else if (ratio >= 1.)
+        line("", "what they release becomes motion; in bodies below " +
+                     engineering(length, "m") + " they do not");
     }
 
     template <int dim>
