@@ -110,7 +110,7 @@ namespace nsfd
     /**
      * The two places of a point that slides turn about each other with its
      * face, by as much as they are apart: what of an overlap comes by this is
-     * neither an approach nor a spring's.
+     * there like that of a spring, and what closes in the step comes on top.
      */
     template <int dim>
     void explain_turns(const ContactPoints<dim> &contacts,
@@ -121,9 +121,10 @@ namespace nsfd
         const std::size_t i = contacts.mesh_point(j);
         const double depth = -old.jump[i * dim],
                      turned = depth + start.jump[j * dim];
-        old.approach[i] = start.approach[j];
+        double &overlap = old.released_overlap[i];
+        overlap = start.released_overlap[j];
         if (has_impulse(old.kind[i]) && depth > 0. && turned > 0.)
-          old.approach[i] += std::min(depth, turned);
+          overlap += std::min(depth, turned);
       }
     }
 
