@@ -247,11 +247,7 @@ namespace nsfd
             notes.push_back(fmt::format("{} elements of the type {} were taken "
                                         "for plane cells of their corners",
                                         n, type));
-          if (n_curved_ > 0)
-            notes.push_back(fmt::format(
-                "{} cells are of higher order in the file: their corners are "
-                "used, their sides are straight",
-                n_curved_));
+          note_straight_sides(mesh_, n_curved_);
           if (n_missing_ > 0)
             notes.push_back(fmt::format("{} entries of sets and surfaces name "
                                         "nodes or elements that are not there",

@@ -371,11 +371,7 @@ namespace nsfd
 
       void add_notes()
       {
-        if (n_curved_ > 0)
-          mesh_.notes.push_back(fmt::format(
-              "{} cells are of higher order in the file: their corners are "
-              "used, their sides are straight",
-              n_curved_));
+        note_straight_sides(mesh_, n_curved_);
         if (n_left_out_ > 0)
           mesh_.notes.push_back(
               fmt::format("{} elements of lower dimension are no faces of "

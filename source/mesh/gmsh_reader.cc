@@ -46,11 +46,7 @@ namespace nsfd
         collect_groups(mesh_.dimension - 1);
         collect_elements(mesh_.dimension, mesh_.cells, problems);
         collect_elements(mesh_.dimension - 1, mesh_.faces, problems);
-        if (n_higher_order_ > 0)
-          mesh_.notes.push_back(fmt::format(
-              "{} cells are of higher order in the file: their corners are "
-              "used, their sides are straight",
-              n_higher_order_));
+        note_straight_sides(mesh_, n_higher_order_);
         if (n_left_out_ > 0)
           mesh_.notes.push_back(
               fmt::format("{} cells are in no physical group and were left out",

@@ -33,6 +33,15 @@ namespace nsfd
     return name.empty() ? std::to_string(number) : name;
   }
 
+  void note_straight_sides(NamedMesh &mesh, const std::size_t n)
+  {
+    if (n > 0)
+      mesh.notes.push_back(
+          fmt::format("{} cells are of higher order in the file: their corners "
+                      "are used, their sides are straight",
+                      n));
+  }
+
   unsigned int NamedMesh::set_of(std::vector<unsigned int> groups_of_element)
   {
     std::sort(groups_of_element.begin(), groups_of_element.end());

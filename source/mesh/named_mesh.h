@@ -85,6 +85,9 @@ namespace nsfd
   void add_field(NamedMesh &mesh, const std::string &name_in_file,
                  std::vector<double> values);
 
+  /** A note that @p n cells are of higher order in the file; none of none. */
+  void note_straight_sides(NamedMesh &mesh, std::size_t n);
+
   /** By set; empty vectors if no element of this kind can belong to it. */
   struct SetsOfNamedGroup {
     std::vector<bool> of_cells, of_faces;

@@ -242,32 +242,40 @@ namespace nsfd::vtk
     return result;
   }
 
+  std::optional<double> next_number(const std::string &text, std::size_t &at,
+                                    std::string &word)
+  {
+    const auto is_space = [](const char c) {
+      return std::isspace(static_cast<unsigned char>(c));
+    };
+    while (at < text.size() && is_space(text[at]))
+      ++at;
+    const std::size_t begin = at;
+    while (at < text.size() && !is_space(text[at]))
+      ++at;
+    word = text.substr(begin, std::min<std::size_t>(at - begin, 40));
+    double value = 0.;
+    const auto [stop, error] =
+        std::from_chars(text.data() + begin, text.data() + at, value);
+    if (error != std::errc() || stop != text.data() + at)
+      return std::nullopt;
+    return value;
+  }
+
   std::vector<double> numbers_of_text(const std::string &text,
                                       const std::string &type)
   {
     if (types().count(type) == 0)
       throw BadBytes(fmt::format("the type `{}` is not read", type));
     std::vector<double> result;
-    const auto is_space = [](const char c) {
-      return std::isspace(static_cast<unsigned char>(c));
-    };
+    std::string word;
     for (std::size_t at = 0;;) {
-      while (at < text.size() && is_space(text[at]))
-        ++at;
-      if (at == text.size())
+      const auto value = next_number(text, at, word);
+      if (word.empty())
         return result;
-      std::size_t end = at;
-      while (end < text.size() && !is_space(text[end]))
-        ++end;
-      double value = 0.;
-      const auto [stop, error] =
-          std::from_chars(text.data() + at, text.data() + end, value);
-      if (error != std::errc() || stop != text.data() + end)
-        throw BadBytes(
-            fmt::format("`{}` is not a number",
-                        text.substr(at, std::min<std::size_t>(end - at, 40))));
-      result.push_back(value);
-      at = end;
+      if (!value)
+        throw BadBytes(fmt::format("`{}` is not a number", word));
+      result.push_back(*value);
     }
   }
 } // namespace nsfd::vtk

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -35,6 +36,14 @@ namespace nsfd::vtk
   /** Numbers of a type such as `Float64` or `UInt8`. */
   std::vector<double> numbers_of(const std::string &bytes,
                                  const std::string &type, bool is_big_endian);
+
+  /**
+   * The number in the next word of @p text from @p at on, which goes behind
+   * it; none if the word is no number. @p word has its first 40 characters,
+   * none at the end of the text.
+   */
+  std::optional<double> next_number(const std::string &text, std::size_t &at,
+                                    std::string &word);
 
   /** The same of numbers with blanks between them. */
   std::vector<double> numbers_of_text(const std::string &text,

@@ -109,11 +109,7 @@ namespace nsfd::vtk
         if (!refuse_foreign())
           return {};
         add_values();
-        if (n_curved_ > 0)
-          mesh_.notes.push_back(fmt::format(
-              "{} cells are of higher order in the file: their corners are "
-              "used, their sides are straight",
-              n_curved_));
+        note_straight_sides(mesh_, n_curved_);
         return std::move(mesh_);
       }
 

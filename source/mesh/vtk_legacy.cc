@@ -1,3 +1,4 @@
+#include "vtk_bytes.h"
 #include "vtk_grid.h"
 
 #include <fmt/format.h>
@@ -161,26 +162,14 @@ namespace nsfd::vtk
 
       double next_number(const std::string &array)
       {
-        const auto is_space = [](const char c) {
-          return std::isspace(static_cast<unsigned char>(c));
-        };
-        while (at_ < text_.size() && is_space(text_[at_]))
-          ++at_;
-        std::size_t end = at_;
-        while (end < text_.size() && !is_space(text_[end]))
-          ++end;
-        double value = 0.;
-        const auto [stop, error] =
-            std::from_chars(text_.data() + at_, text_.data() + end, value);
-        if (error != std::errc() || stop != text_.data() + end)
+        std::string word;
+        const auto value = vtk::next_number(text_, at_, word);
+        if (!value)
           throw Refusal(
-              end == at_ ? fmt::format("it ends early, in `{}`", array)
-                         : fmt::format("`{}` in `{}` is not a number",
-                                       text_.substr(at_, std::min<std::size_t>(
-                                                             end - at_, 40)),
-                                       array));
-        at_ = end;
-        return value;
+              word.empty()
+                  ? fmt::format("it ends early, in `{}`", array)
+                  : fmt::format("`{}` in `{}` is not a number", word, array));
+        return *value;
       }
 
       /** Words of a line behind the first one. */

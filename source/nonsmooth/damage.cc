@@ -10,14 +10,14 @@ namespace nsfd
   namespace
   {
     constexpr double no_jump[3] = {};
-
-    LawPoint law_at(const Interaction &interaction, const double strength,
-                    const double opening)
-    {
-      return LawPoint(*interaction.law, strength, opening, interaction.plateau,
-                      interaction.stiffness_ratio, interaction.shear_weight);
-    }
   } // namespace
+
+  LawPoint law_at(const Interaction &interaction, const double strength,
+                  const double opening)
+  {
+    return LawPoint(*interaction.law, strength, opening, interaction.plateau,
+                    interaction.stiffness_ratio, interaction.shear_weight);
+  }
 
   template <int dim>
   PointDamage<dim>::PointDamage(const OneStepProblem<dim> &problem,

@@ -5,6 +5,11 @@
 
 namespace nsfd
 {
+  /** The law of an interaction at a point of these factors of strength and
+      opening. */
+  LawPoint law_at(const Interaction &interaction, double strength,
+                  double opening);
+
   /**
    * The cohesive law of a point during one step: what its history, the jump at
    * the start and the rule of the cohesive force make of a jump at the end.

@@ -10,6 +10,7 @@
 #include "fragment_output.h"
 #include "history_file.h"
 #include "nsfd/core/archive.h"
+#include "nsfd/scene/scene_input.h"
 #include "progress.h"
 #include "records/run_options.h"
 #include "report.h"

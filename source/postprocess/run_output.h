@@ -47,8 +47,8 @@ namespace nsfd
     /** The initial state: the row of step 0. */
     void start(const HistoryRow &row);
 
-    /** An accepted step: history.csv, progress, the curves of the report. */
-    /** A step whose loads are those of @p load_time, s. */
+    /** An accepted step, whose loads are those of @p load_time (s):
+        history.csv, progress, the curves of the report. */
     void record(const HistoryRow &row, double load_time);
 
     /**

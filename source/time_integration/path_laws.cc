@@ -23,13 +23,6 @@ namespace nsfd
     /** The same of the spring that an open point starts with, at least: stiffer
         ones are hard to solve. */
     constexpr double least_opening = 1e-3;
-
-    LawPoint law_of(const Interaction &interaction, const double strength,
-                    const double opening)
-    {
-      return LawPoint(*interaction.law, strength, opening, interaction.plateau,
-                      interaction.stiffness_ratio, interaction.shear_weight);
-    }
   } // namespace
 
   template <int dim>
@@ -93,7 +86,7 @@ namespace nsfd
     if (!takes_part(i) || is_closed(i))
       return 0.;
     const Interaction &interaction = laws_.law(i);
-    const LawPoint law = law_of(interaction, problem_.strength_factor[i],
+    const LawPoint law = law_at(interaction, problem_.strength_factor[i],
                                 problem_.opening_factor[i]);
     const LawState start{JumpSize::of<dim>(&iterate_.old->jump[i * dim]),
                          laws_.history(i)};

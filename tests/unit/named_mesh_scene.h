@@ -20,6 +20,17 @@ namespace nsfd
 {
   namespace test
   {
+    /** The name of a test whose parameter is that of a file. */
+    template <typename Info>
+    std::string file_as_name(const Info &info)
+    {
+      std::string name = info.param;
+      for (char &c : name)
+        if (c == '.')
+          c = '_';
+      return name;
+    }
+
     /** A scene of one material with these lines in its section Mesh. */
     inline std::string mesh_scene(const unsigned int dimension,
                                   const std::string &mesh_lines,

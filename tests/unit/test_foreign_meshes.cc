@@ -51,13 +51,7 @@ namespace test_foreign_meshes
                       "plate_vtk_ascii.vtk", "plate_vtk_binary.vtk",
                       "plate_vtk_ascii.vtu", "plate_vtk_inline.vtu",
                       "plate_vtk_base64.vtu", "plate_vtk_raw.vtu"),
-      [](const auto &info) {
-        std::string name = info.param;
-        for (char &c : name)
-          if (c == '.')
-            c = '_';
-        return name;
-      });
+      [](const auto &info) { return file_as_name(info); });
 
   TEST(ForeignMeshes, VtkHasFieldsAndOrientations)
   {

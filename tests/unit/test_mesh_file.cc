@@ -79,13 +79,7 @@ namespace test_mesh_file
                       "plate_41_ascii.msh", "plate_41_binary.msh",
                       "plate_quads.msh", "plate_second_order.msh",
                       "plate_2_partitions.msh", "plate.geo"),
-      [](const auto &info) {
-        std::string name = info.param;
-        for (char &c : name)
-          if (c == '.')
-            c = '_';
-        return name;
-      });
+      [](const auto &info) { return file_as_name(info); });
 
   /** Sorted, the numbers of vertices do not matter. */
   std::vector<std::array<double, 2>> places(const NamedMesh &mesh)
